@@ -1,0 +1,42 @@
+//! What a job says of each parameter: free, fixed, tied, and what is known of it beforehand.
+
+/// What the engine does with a parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Role {
+    /// Fitted, between bounds that it may touch.
+    Free {
+        /// First start point.
+        start: f64,
+        /// Smallest allowed value.
+        lower: f64,
+        /// Largest allowed value.
+        upper: f64,
+    },
+    /// Kept at this value.
+    Fixed(f64),
+    /// `constant + Σ factor · parameter`, over parameters that are not tied themselves.
+    Tied {
+        /// The constant term.
+        constant: f64,
+        /// Index of a parameter and its factor.
+        terms: Vec<(usize, f64)>,
+    },
+}
+
+/// A Gaussian prior, one more residual (value − mean)/σ.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prior {
+    /// Expected value.
+    pub mean: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+}
+
+/// One parameter's role and prior.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assignment {
+    /// Free, fixed or tied.
+    pub role: Role,
+    /// What is known beforehand, if anything.
+    pub prior: Option<Prior>,
+}

@@ -1,0 +1,3 @@
+//! The command line: it only dispatches.
+
+fn main() {}

@@ -1,0 +1,64 @@
+//! What was measured, after it has been read and checked: spectra at given angles, or peak wavelengths at given angles.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Geometry;
+
+/// What the numbers of a table mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// BRDF, 1/sr.
+    Brdf,
+    /// BRDF times the cosine of the viewer's inclination, 1/sr.
+    BsdfCos,
+    /// Ratio to a white Lambertian standard in the same instrument: 1 = as bright as the standard.
+    Reflectance,
+}
+
+/// One geometry's readings over wavelength. Wavelengths rise strictly, every number is finite, every σ positive.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spectrum {
+    /// Name in the table, or its angles where the table has none.
+    pub id: String,
+    /// Angles of light and viewer.
+    pub geometry: Geometry,
+    /// Wavelengths, nm.
+    pub wavelengths_nm: Vec<f64>,
+    /// Readings; a reflectance in percent has been divided by 100.
+    pub values: Vec<f64>,
+    /// Standard deviation of each reading, where the table gives one.
+    pub sigmas: Option<Vec<f64>>,
+}
+
+/// A checked gonio table: at least one spectrum, either all with σ or none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GonioTable {
+    /// Meaning of the values.
+    pub quantity: Quantity,
+    /// One spectrum a geometry, in the order of the file.
+    pub spectra: Vec<Spectrum>,
+}
+
+/// One peak wavelength read off a spectrum.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PeakReading {
+    /// Name in the table, or its angles where the table has none.
+    pub id: String,
+    /// Angles of light and viewer.
+    pub geometry: Geometry,
+    /// Wavelength of the spectrum's local maximum, nm.
+    pub wavelength_nm: f64,
+    /// Standard deviation, nm, where the table gives one.
+    pub sigma_nm: Option<f64>,
+    /// Which maximum: 1 is the one of longest wavelength, 2 the next. Missing where nobody knows.
+    pub order: Option<u32>,
+}
+
+/// A checked peak table: at least one reading, either all with σ or none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PeakTable {
+    /// In the order of the file.
+    pub readings: Vec<PeakReading>,
+}

@@ -1,0 +1,1 @@
+//! Interfaces, films, materials and microfacets. Knows nothing of what is above it.
