@@ -27,9 +27,10 @@ pub use file::{
 };
 pub use load::Job;
 pub use outcome::{
-    Case, CaseData, InputFile, MaterialNote, ModelNote, Outcome, PeakFit, Prediction, Reference, SpectrumFit, Support,
-    ThicknessOrder, Truth,
+    Case, CaseData, InputFile, ModelNote, Outcome, PeakFit, Prediction, SpectrumFit, Support, ThicknessOrder, Truth,
 };
 pub use run::run;
 pub use schema::schemas;
 pub use simulate::{Noise, simulate};
+
+pub use crate::optics::{MaterialNote, Reference};
