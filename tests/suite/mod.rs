@@ -1,1 +1,4 @@
+//! Table of contents.
+
+mod nist;
 mod optics;
