@@ -1,7 +1,17 @@
 //! Measurements: the geometry of a reading, tables of readings, the instrument that took them, and colour.
 
+mod error;
 mod geometry;
+mod layout;
+mod read;
 mod table;
+mod text;
 
+pub use error::{Place, TableError, TableProblem};
 pub use geometry::Geometry;
-pub use table::{GonioTable, PeakReading, PeakTable, Quantity, Spectrum};
+pub use layout::{
+    AngleUnit, Angles, Cell, Delimiter, FourAngles, LongColumns, Negative, PeaksLayout, PerColumn, SigmaLayout, Source,
+    SpectraColumns, SpectraLayout, TableLayout, TextFormat, WavelengthUnit, WideAngles, WideColumns,
+};
+pub use read::{read_peaks, read_spectra, read_table};
+pub use table::{GonioTable, PeakReading, PeakTable, Quantity, Spectrum, Table};

@@ -1,0 +1,3 @@
+//! All integration tests in one binary, which links once. The table of contents is `suite/mod.rs`.
+
+mod suite;
