@@ -1,4 +1,6 @@
 //! Table of contents.
 
+mod data;
 mod nist;
 mod optics;
+mod tables;

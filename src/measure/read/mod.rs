@@ -1,0 +1,31 @@
+//! Reads a table file into checked types: first the cells as they stand ([`columns`], [`long`], [`wide`]), then units,
+//! order and meaning ([`checks`], [`spectra`], [`peaks`]).
+
+mod checks;
+mod columns;
+mod long;
+mod peaks;
+mod spectra;
+mod wide;
+
+use std::path::Path;
+
+pub use peaks::read_peaks;
+pub use spectra::read_spectra;
+
+use super::error::TableError;
+use super::layout::TableLayout;
+use super::table::Table;
+
+/// Reads and checks the table at `path`.
+///
+/// # Errors
+///
+/// Whatever keeps the table from being what its layout says, with file, line and column: see
+/// [`TableProblem`](super::TableProblem).
+pub fn read_table(path: &Path, layout: &TableLayout) -> Result<Table, TableError> {
+    match layout {
+        TableLayout::Spectra(layout) => read_spectra(path, layout).map(Table::Spectra),
+        TableLayout::Peaks(layout) => read_peaks(path, layout).map(Table::Peaks),
+    }
+}
