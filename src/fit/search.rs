@@ -44,7 +44,6 @@ pub(super) fn all_bounds(objective: &Objective<'_>) -> Bounds {
 pub(super) fn search(objective: &Objective<'_>, pattern: &Pattern, settings: &Settings) -> Survey {
     let bounds = all_bounds(objective);
     let coarse = if settings.starts > 1 { objective.residuals.coarse() } else { None };
-    let coarse: Option<&dyn Residuals> = coarse.as_deref();
     let screen = coarse.map(|residuals| objective.on(residuals));
     let screen_pattern = screen.as_ref().map(|screen| Pattern::new(screen, false));
     let (screening, screening_pattern) = match (&screen, &screen_pattern) {

@@ -12,7 +12,7 @@ use super::spectra::{SpectraProblem, SpectraSetup};
 use super::{InputFile, JobError, JobFile, synthetic};
 use crate::bsdf::Model;
 use crate::bsdf::coated_base::{CoatedBase, Design};
-use crate::fit::{Assignment, Prior, Residuals, Role, parse_tie};
+use crate::fit::{Assignment, Control, Fit, Loss, Prior, Residuals, Role, fit, parse_tie};
 use crate::measure::{
     Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, ThinFilmLaw, read_table,
 };
@@ -20,7 +20,7 @@ use crate::parameter::{Parameter, Spread};
 
 /// A case, checked and ready to be fitted.
 #[derive(Debug)]
-pub(super) struct CheckedCase {
+pub struct CheckedCase {
     /// The job with this case's assumptions.
     pub(super) file: JobFile,
     /// Readings and model.
@@ -36,16 +36,6 @@ pub(super) enum Comparison {
     Spectra(GonioTable, Vec<bool>, SpectraProblem),
     /// Peak wavelengths against a peak model.
     Peaks(PeakTable, Vec<bool>, PeaksProblem),
-}
-
-impl Comparison {
-    /// As the engine sees it.
-    pub(super) fn residuals(&self) -> &dyn Residuals {
-        match self {
-            Self::Spectra(_, _, problem) => problem,
-            Self::Peaks(_, _, problem) => problem,
-        }
-    }
 }
 
 /// The readings of a job's data section and the file they came from.
@@ -144,6 +134,19 @@ fn degrees_from_mirror(geometry: &Geometry) -> f64 {
 }
 
 impl CheckedCase {
+    /// Fits the free parameters.
+    pub fn fit(&self, control: &Control) -> Result<Fit, JobError> {
+        Ok(fit(self.residuals(), &self.assignments, &self.file.fit, control)?)
+    }
+
+    /// Readings and model as the engine sees them.
+    pub fn residuals(&self) -> &dyn Residuals {
+        match &self.comparison {
+            Comparison::Spectra(_, _, problem) => problem,
+            Comparison::Peaks(_, _, problem) => problem,
+        }
+    }
+
     /// Checks one case of a job against its readings.
     pub(super) fn new(file: JobFile, table: Table) -> Result<Self, JobError> {
         check_instrument(&file.instrument)?;
@@ -165,8 +168,11 @@ impl CheckedCase {
                 Comparison::Peaks(table, fitted, problem)
             }
         };
-        let residuals = comparison.residuals();
-        if file.fit.loss != crate::fit::Loss::Squares && !residuals.sigma_known() {
+        let residuals: &dyn Residuals = match &comparison {
+            Comparison::Spectra(_, _, problem) => problem,
+            Comparison::Peaks(_, _, problem) => problem,
+        };
+        if file.fit.loss != Loss::Squares && !residuals.sigma_known() {
             let problem = "a robust loss needs to know how large a residual is usual; give the readings a σ \
                            (`sigma` in data.layout), or use `loss = \"squares\"`";
             return Err(JobError::key("fit.loss", problem));

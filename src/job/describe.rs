@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::case::{CheckedCase, Comparison, read_data};
+use super::case::Comparison;
 use super::model_note::model_note;
 use super::{Job, JobError};
 use crate::fit::{Assignment, Role};
@@ -11,10 +11,8 @@ use crate::parameter::Parameter;
 /// Checks a job and its data, and says what a fit would do.
 pub fn describe(job: &Job) -> Result<String, JobError> {
     let mut text = format!("{}\n", job.file.title);
-    for file in job.file.cases() {
-        let (table, _) = read_data(&file.data, &job.folder, &file)?;
-        let case = CheckedCase::new(file, table)?;
-        let residuals = case.comparison.residuals();
+    for case in job.cases()?.0 {
+        let residuals = case.residuals();
         let readings = match &case.comparison {
             Comparison::Spectra(table, fitted, _) => format!(
                 "{} of {} spectra, {} readings",

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
+use super::case::{CheckedCase, read_data};
 use super::{InputFile, JobError, JobFile};
 
 /// A parsed job and where it came from.
@@ -42,6 +43,27 @@ impl Job {
         let name = named.file_stem().map_or_else(|| "job".into(), |stem| stem.to_string_lossy().into_owned());
         let file = parse(&text).map_err(|message| JobError::Syntax { path: file_path, message })?;
         Ok(Self { name, folder, file, text, inputs: vec![input] })
+    }
+
+    /// A job from its text, with paths that count from `folder`.
+    pub fn from_text(name: &str, text: &str, folder: &Path) -> Result<Self, JobError> {
+        let file = parse(text).map_err(|message| JobError::Syntax { path: PathBuf::from(name), message })?;
+        let (name, text) = (name.to_owned(), text.to_owned());
+        Ok(Self { name, folder: folder.to_owned(), file, text, inputs: Vec::new() })
+    }
+
+    /// Every case, its readings read or made and checked against its model, and the files that they came from.
+    pub fn cases(&self) -> Result<(Vec<CheckedCase>, Vec<InputFile>), JobError> {
+        let mut inputs = self.inputs.clone();
+        let mut cases = Vec::new();
+        for file in self.file.cases() {
+            let (table, input) = read_data(&file.data, &self.folder, &self.file)?;
+            if let Some(input) = input.filter(|input| !inputs.contains(input)) {
+                inputs.push(input);
+            }
+            cases.push(CheckedCase::new(file, table)?);
+        }
+        Ok((cases, inputs))
     }
 
     /// Uses another seed for the start points of every case.

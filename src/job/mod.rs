@@ -19,6 +19,7 @@ mod spectra;
 mod support;
 mod synthetic;
 
+pub use case::CheckedCase;
 pub use catalogue::{ModelEntry, models};
 pub use describe::describe;
 pub use error::JobError;

@@ -1,7 +1,7 @@
 //! Runs a job: every case is fitted, judged and put beside its readings.
 
 use super::answer::{case_answer, job_answer};
-use super::case::{CheckedCase, Comparison, read_data};
+use super::case::{CheckedCase, Comparison};
 use super::film_peaks::FilmPeaks;
 use super::file::ModelFile;
 use super::model_note::model_note;
@@ -10,20 +10,13 @@ use super::peaks::PeaksProblem;
 use super::predict::{predict, values_by_name};
 use super::support::film_support;
 use super::{Job, JobError, JobFile};
-use crate::fit::{Control, Fit, Residuals, fit};
+use crate::fit::{Control, Fit};
 use crate::measure::{Geometry, GonioTable, PeakReading, PeakTable};
 
 /// Fits every case of a job.
 pub fn run(job: &Job, control: &Control) -> Result<Outcome, JobError> {
-    let mut inputs = job.inputs.clone();
-    let mut cases = Vec::new();
-    for file in job.file.cases() {
-        let (table, input) = read_data(&file.data, &job.folder, &file)?;
-        if let Some(input) = input.filter(|input| !inputs.contains(input)) {
-            inputs.push(input);
-        }
-        cases.push(run_case(&CheckedCase::new(file, table)?, control)?);
-    }
+    let (checked, inputs) = job.cases()?;
+    let cases = checked.iter().map(|case| run_case(case, control)).collect::<Result<_, _>>()?;
     let synthetic = job.file.data.synthetic.as_ref().map(|recipe| Truth {
         values: recipe.truth.clone(),
         noise: recipe.noise,
@@ -45,7 +38,7 @@ pub fn run(job: &Job, control: &Control) -> Result<Outcome, JobError> {
 }
 
 fn run_case(case: &CheckedCase, control: &Control) -> Result<Case, JobError> {
-    let found = fit(case.comparison.residuals(), &case.assignments, &case.file.fit, control)?;
+    let found = case.fit(control)?;
     let support = film_support(case, &found, control)?;
     let (data, orders) = match &case.comparison {
         Comparison::Spectra(table, fitted, _) => (spectra_data(&case.file, table, fitted, &found)?, Vec::new()),

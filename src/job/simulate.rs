@@ -1,6 +1,6 @@
 //! A job run forward: the model's readings at the geometry of its table.
 
-use super::case::{CheckedCase, Comparison, read_data};
+use super::case::Comparison;
 use super::predict::Values;
 use super::synthetic::{add_noise, forward};
 use super::{Job, JobError};
@@ -24,10 +24,8 @@ pub fn simulate(job: &Job, set: &Values, noise: Noise) -> Result<String, JobErro
         let problem = format!("found {}; expected a share of each reading from 0 to below 1", noise.share);
         return Err(JobError::key("--noise", problem));
     }
-    let file = job.file.cases().swap_remove(0);
-    let (table, _) = read_data(&file.data, &job.folder, &file)?;
-    let case = CheckedCase::new(file, table)?;
-    let declared = case.comparison.residuals().parameters();
+    let case = job.cases()?.0.swap_remove(0);
+    let declared = case.residuals().parameters();
     if let Some(name) = set.keys().find(|name| !declared.iter().any(|parameter| parameter.name == **name)) {
         let known: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
         let problem = format!("there is no parameter `{name}`; this job has {}", known.join(", "));
