@@ -87,10 +87,8 @@ pub struct SyntheticFile {
     pub quantity: Quantity,
     /// Inclinations of light and viewer, in mirror position, degrees.
     pub mirror_deg: Vec<f64>,
-    /// First wavelength, nm.
-    pub from_nm: f64,
-    /// Last wavelength, nm.
-    pub to_nm: f64,
+    /// First and last wavelength, nm.
+    pub window_nm: [f64; 2],
     /// Step between wavelengths, nm.
     pub step_nm: f64,
     /// Standard deviation of the noise as a share of each reading.

@@ -18,10 +18,12 @@ const LARGEST_TABLE: f64 = 1e7;
 /// Readings of the recipe, noise included.
 pub(super) fn readings(recipe: &SyntheticFile, file: &JobFile) -> Result<GonioTable, JobError> {
     let key = |name: &str, problem: String| JobError::key(format!("data.synthetic.{name}"), problem);
-    let count = ((recipe.to_nm - recipe.from_nm) / recipe.step_nm + 1e-9).floor() + 1.0;
-    if !(recipe.from_nm > 0.0 && recipe.step_nm > 0.0 && recipe.to_nm > recipe.from_nm && count.is_finite()) {
-        let found = format!("found {} to {} step {}", recipe.from_nm, recipe.to_nm, recipe.step_nm);
-        return Err(key("from_nm", format!("{found}; expected a rising range above 0 and a step above 0")));
+    let [first_nm, last_nm] = recipe.window_nm;
+    // The small addition keeps a last wavelength that rounding would lose.
+    let count = ((last_nm - first_nm) / recipe.step_nm + 1e-9).floor() + 1.0;
+    if !(first_nm > 0.0 && recipe.step_nm > 0.0 && last_nm > first_nm && count.is_finite()) {
+        let found = format!("found {first_nm} to {last_nm} in steps of {}", recipe.step_nm);
+        return Err(key("window_nm", format!("{found}; expected a rising range above 0 and a step above 0")));
     }
     if count * f64::from(u32::try_from(recipe.mirror_deg.len()).unwrap_or(u32::MAX)) > LARGEST_TABLE {
         return Err(key("step_nm", format!("this makes more than {LARGEST_TABLE:e} readings; take a larger step")));
@@ -37,7 +39,7 @@ pub(super) fn readings(recipe: &SyntheticFile, file: &JobFile) -> Result<GonioTa
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by LARGEST_TABLE above")]
     let wavelengths_nm: Vec<f64> =
-        (0..count as u32).map(|step| recipe.from_nm + recipe.step_nm * f64::from(step)).collect();
+        (0..count as u32).map(|step| first_nm + recipe.step_nm * f64::from(step)).collect();
     let spectra = recipe
         .mirror_deg
         .iter()

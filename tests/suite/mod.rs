@@ -1,6 +1,8 @@
 //! Table of contents.
 
+mod coverage;
 mod data;
 mod nist;
 mod optics;
 mod tables;
+mod twins;
