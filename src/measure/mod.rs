@@ -2,6 +2,7 @@
 
 mod error;
 mod geometry;
+mod guess;
 mod layout;
 mod read;
 mod table;
@@ -9,6 +10,7 @@ mod text;
 
 pub use error::{Place, TableError, TableProblem};
 pub use geometry::Geometry;
+pub use guess::{Certainty, Guess, GuessNote, guess_layout};
 pub use layout::{
     AngleUnit, Angles, Cell, Delimiter, FourAngles, LongColumns, Negative, PeaksLayout, PerColumn, SigmaLayout, Source,
     SpectraColumns, SpectraLayout, TableLayout, TextFormat, WavelengthUnit, WideAngles, WideColumns,
