@@ -15,5 +15,6 @@ pub use layout::{
     AngleUnit, Angles, Cell, Delimiter, FourAngles, LongColumns, Negative, PeaksLayout, PerColumn, SigmaLayout, Source,
     SpectraColumns, SpectraLayout, TableLayout, TextFormat, WavelengthUnit, WideAngles, WideColumns,
 };
-pub use read::{read_peaks, read_spectra, read_table};
+pub use read::read_table;
 pub use table::{GonioTable, PeakReading, PeakTable, Quantity, Spectrum, Table};
+pub use text::TableText;

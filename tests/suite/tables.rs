@@ -2,9 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap as tests do")]
 
+use std::path::Path;
+
 use barbule::measure::{
-    Certainty, Geometry, GonioTable, Guess, SpectraLayout, Table, TableError, TableLayout, TableProblem, guess_layout,
-    read_spectra, read_table,
+    Certainty, Geometry, GonioTable, Guess, SpectraLayout, Table, TableError, TableLayout, TableProblem, TableText,
+    guess_layout, read_table,
 };
 
 use rand::{Rng, SeedableRng};
@@ -17,16 +19,24 @@ fn layout(toml: &str) -> TableLayout {
     toml::from_str(toml).unwrap_or_else(|error| panic!("{toml}\n{error}"))
 }
 
+fn load(name: &str) -> TableText {
+    TableText::load(&data_file(name)).unwrap()
+}
+
+fn read_real(name: &str, toml: &str) -> GonioTable {
+    match read_table(&load(name), &TableLayout::Spectra(spectra_layout(toml))).unwrap() {
+        Table::Spectra(table) => table,
+        Table::Peaks(_) => panic!("asked for spectra"),
+    }
+}
+
 fn spectra_layout(toml: &str) -> SpectraLayout {
     toml::from_str(toml).unwrap_or_else(|error| panic!("{toml}\n{error}"))
 }
 
-/// Writes the table into a folder of its own and reads it back.
+/// Reads the table as if it came from a file.
 fn read(table: impl AsRef<[u8]>, layout: &TableLayout) -> Result<Table, TableError> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("table.csv");
-    std::fs::write(&path, table).unwrap();
-    read_table(&path, layout)
+    read_table(&TableText::from_bytes(Path::new("table.csv"), table.as_ref().to_vec())?, layout)
 }
 
 fn spectra(table: impl AsRef<[u8]>, toml: &str) -> GonioTable {
@@ -59,7 +69,7 @@ id = "spectrum_id"
 #[test]
 #[cfg_attr(not(barbule_data), ignore = "set BARBULE_DATA to the folder of measurements")]
 fn the_teal_is_the_same_bird_long_and_wide() {
-    let long = read_spectra(&data_file("gonio/teal_wing_patch.csv"), &spectra_layout(TEAL)).unwrap();
+    let long = read_real("gonio/teal_wing_patch.csv", TEAL);
     assert_eq!(long.spectra.len(), 12);
     assert_eq!(long.spectra[0].wavelengths_nm.len(), 401);
     let wide = r#"
@@ -69,7 +79,7 @@ fn the_teal_is_the_same_bird_long_and_wide() {
         wavelength = "wl"
         angles = { mirror = [15, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70] }
     "#;
-    let wide = read_spectra(&data_file("gonio/teal_wing_patch_wide.csv"), &spectra_layout(wide)).unwrap();
+    let wide = read_real("gonio/teal_wing_patch_wide.csv", wide);
     for (long, wide) in long.spectra.iter().zip(&wide.spectra) {
         assert_eq!(long.geometry, wide.geometry);
         assert_eq!(long.wavelengths_nm, wide.wavelengths_nm);
@@ -102,11 +112,9 @@ sigma = { column = "sigma" }
 order = "order"
 "#;
 
-/// The sentence that a bad table gets, without the folder that the test made for it.
+/// The sentence that a bad table gets.
 fn sentence(table: impl AsRef<[u8]>, toml: &str) -> String {
-    let error = read(table, &layout(toml)).expect_err("a bad table was read");
-    let text = error.to_string();
-    text[text.find("table.csv").unwrap()..].to_owned()
+    read(table, &layout(toml)).expect_err("a bad table was read").to_string()
 }
 
 #[test]
@@ -481,8 +489,7 @@ fn peaks_keep_order_and_uncertainty() {
 #[test]
 fn a_path_that_is_no_file_is_said_so() {
     let folder = tempfile::tempdir().unwrap();
-    let layout = layout(LONG);
-    let sentence = |name: &str| read_table(&folder.path().join(name), &layout).unwrap_err().problem.to_string();
+    let sentence = |name: &str| TableText::load(&folder.path().join(name)).unwrap_err().problem.to_string();
     assert!(sentence("none.csv").starts_with("there is no such file"));
     assert!(sentence("").starts_with("found a folder or a device"));
 }
@@ -496,7 +503,7 @@ fn a_gigabyte_of_zeros_costs_neither_time_nor_memory() {
         std::fs::write(&path, start).unwrap();
         std::fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(1 << 30).unwrap();
         let begin = std::time::Instant::now();
-        let problem = read_table(&path, &layout(LONG)).unwrap_err().problem.to_string();
+        let problem = TableText::load(&path).unwrap_err().problem.to_string();
         // Reading it would take a second or more; refusing it takes microseconds.
         assert!(begin.elapsed().as_millis() < 200, "{:?}", begin.elapsed());
         problem
@@ -515,11 +522,9 @@ fn a_line_without_end_is_refused() {
 
 /// Guesses the layout of the table, then reads it so.
 fn guess(table: &str) -> (Guess, Result<Table, TableError>) {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("table.csv");
-    std::fs::write(&path, table).unwrap();
-    let guess = guess_layout(&path).unwrap();
-    let table = read_table(&path, &guess.layout);
+    let text = TableText::from_bytes(Path::new("table.csv"), table.into()).unwrap();
+    let guess = guess_layout(&text).unwrap();
+    let table = read_table(&text, &guess.layout);
     (guess, table)
 }
 
@@ -534,13 +539,13 @@ fn real_tables_are_guessed() {
         ("garnet_red_paint_cornell", 1439, 31),
     ];
     for (name, spectra, readings) in read {
-        let path = data_file(&format!("gonio/{name}.csv"));
-        let Table::Spectra(table) = read_table(&path, &guess_layout(&path).unwrap().layout).unwrap() else {
+        let text = load(&format!("gonio/{name}.csv"));
+        let Table::Spectra(table) = read_table(&text, &guess_layout(&text).unwrap().layout).unwrap() else {
             panic!("{name} holds spectra")
         };
         assert_eq!((table.spectra.len(), table.spectra[0].values.len()), (spectra, readings), "{name}");
     }
-    let teal = guess_layout(&data_file("gonio/teal_wing_patch.csv")).unwrap().layout;
+    let teal = guess_layout(&load("gonio/teal_wing_patch.csv")).unwrap().layout;
     assert_eq!(teal, TableLayout::Spectra(spectra_layout(TEAL)));
     // One file lacks its angles; three others, taken at one unknown geometry, likewise. That is said, not made up.
     for name in [
@@ -549,10 +554,10 @@ fn real_tables_are_guessed() {
         "spectra/pavo_specsdata",
         "spectra/starling_elisabeth",
     ] {
-        let path = data_file(&format!("{name}.csv"));
-        let guess = guess_layout(&path).unwrap();
+        let text = load(&format!("{name}.csv"));
+        let guess = guess_layout(&text).unwrap();
         assert!(guess.notes.iter().any(|note| note.key.ends_with("angles") && note.certainty == Certainty::Missing));
-        let problem = read_table(&path, &guess.layout).unwrap_err().problem.to_string();
+        let problem = read_table(&text, &guess.layout).unwrap_err().problem.to_string();
         assert!(problem.starts_with("the job does not give the angles of this spectrum yet"), "{name}: {problem}");
     }
 }
@@ -615,8 +620,6 @@ fn damage(cases: u64) {
         b"9",
         b"0",
     ];
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("table.csv");
     let (mut read, mut refused) = (0_u64, 0_u64);
     for case in 0..cases {
         let mut random = ChaCha8Rng::seed_from_u64(20_260_101);
@@ -635,10 +638,10 @@ fn damage(cases: u64) {
                 }
             }
         }
-        std::fs::write(&path, &bytes).unwrap();
-        let guessed = guess_layout(&path).map(|guess| guess.layout);
+        let text = TableText::from_bytes(Path::new("table.csv"), bytes);
+        let guessed = text.clone().and_then(|text| guess_layout(&text)).map(|guess| guess.layout);
         for layout in std::iter::once(layouts[index].clone()).chain(guessed) {
-            match read_table(&path, &layout) {
+            match text.clone().and_then(|text| read_table(&text, &layout)) {
                 Ok(table) => {
                     read += 1;
                     keeps_its_promises(&table);

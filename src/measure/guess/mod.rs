@@ -9,7 +9,6 @@ mod scan;
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
 use std::num::NonZeroUsize;
-use std::path::Path;
 
 use names::Role;
 use scan::{Column, Scan};
@@ -21,7 +20,7 @@ use super::layout::{
     SpectraColumns, SpectraLayout, TableLayout, TextFormat, WavelengthUnit, WideAngles, WideColumns,
 };
 use super::read::read_table;
-use super::text::Text;
+use super::text::TableText;
 
 /// A table's layout as far as it can be told, and why.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,18 +53,17 @@ pub enum Certainty {
     Missing,
 }
 
-/// Guesses the layout of the table at `path`.
+/// Guesses the layout of a table.
 ///
 /// # Errors
 ///
 /// If the file is no table of cells at all, or has neither wavelengths nor peaks that can be found.
-pub fn guess_layout(path: &Path) -> Result<Guess, TableError> {
-    let text = Text::load(path)?;
-    let scan = scan::scan(&text)?;
+pub fn guess_layout(text: &TableText) -> Result<Guess, TableError> {
+    let scan = scan::scan(text)?;
     let mut guesser = Guesser { scan: &scan, notes: Vec::new() };
-    let layout = guesser.layout().ok_or_else(|| TableError::new(path, Place::Line(1), no_wavelength(&scan)))?;
+    let layout = guesser.layout().ok_or_else(|| TableError::new(&text.file, Place::Line(1), no_wavelength(&scan)))?;
     let mut guess = Guess { layout, notes: guesser.notes };
-    allow_replicates(path, &mut guess);
+    allow_replicates(text, &mut guess);
     Ok(guess)
 }
 
@@ -75,8 +73,8 @@ fn no_wavelength(scan: &Scan) -> TableProblem {
 }
 
 /// Reads the table as guessed; if all that is wrong is that angles repeat, it holds repeated measurements.
-fn allow_replicates(path: &Path, guess: &mut Guess) {
-    let Err(error) = read_table(path, &guess.layout) else { return };
+fn allow_replicates(text: &TableText, guess: &mut Guess) {
+    let Err(error) = read_table(text, &guess.layout) else { return };
     if matches!(*error.problem, TableProblem::GeometryTwice { .. }) {
         match &mut guess.layout {
             TableLayout::Spectra(layout) => layout.replicates = true,

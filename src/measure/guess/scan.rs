@@ -2,7 +2,7 @@
 
 use crate::measure::error::{Place, TableError, TableProblem};
 use crate::measure::layout::{Delimiter, TextFormat};
-use crate::measure::text::{self, Text};
+use crate::measure::text::{self, TableText};
 
 /// One column's cells in short.
 #[derive(Debug, Clone)]
@@ -72,7 +72,7 @@ pub(super) struct Scan {
 }
 
 /// Reads the whole table once.
-pub(super) fn scan(text: &Text) -> Result<Scan, TableError> {
+pub(super) fn scan(text: &TableText) -> Result<Scan, TableError> {
     let line = text.first_line();
     let delimiter = text::DELIMITERS.into_iter().rev().max_by_key(|delimiter| text::count(line, *delimiter));
     let delimiter = delimiter.unwrap_or_default();
@@ -97,7 +97,7 @@ pub(super) fn scan(text: &Text) -> Result<Scan, TableError> {
 }
 
 /// Whether some cell is a number only if its comma is a decimal one.
-fn has_decimal_commas(text: &Text, delimiter: Delimiter) -> Result<bool, TableError> {
+fn has_decimal_commas(text: &TableText, delimiter: Delimiter) -> Result<bool, TableError> {
     let mut rows = text.rows(TextFormat { delimiter, decimal_comma: false })?;
     let cells = rows.columns.len();
     while let Some(row) = rows.next()? {
