@@ -246,7 +246,8 @@ pub enum TableProblem {
     },
     /// An inclination out of range.
     #[error(
-        "found an inclination of {found}°, and expected 0° to less than 90°, counted from the surface's normal; if the table counts from the surface itself, write 90 − angle"
+        "found an inclination of {found}°, and expected 0° to less than 90°, counted from the surface's normal; {}",
+        inclination(*.found)
     )]
     InclinationRange {
         /// The value, degrees.
@@ -342,6 +343,9 @@ pub enum TableProblem {
         /// Columns of spectra in the file.
         columns: Vec<String>,
     },
+    /// Angles that are still to be filled in.
+    #[error("the job does not give the angles of this spectrum yet; write them, in degrees, where it says nan")]
+    AngleMissing,
     /// A key whose value makes no sense.
     #[error("the job's `{key}` is {found}; expected {expected}")]
     Key {

@@ -57,7 +57,7 @@ pub struct SpectraLayout {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_unit: Option<AngleUnit>,
     /// How the text is written.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "TextFormat::is_default")]
     pub text: TextFormat,
 }
 
@@ -149,7 +149,7 @@ pub struct PeaksLayout {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_unit: Option<AngleUnit>,
     /// How the text is written.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "TextFormat::is_default")]
     pub text: TextFormat,
 }
 
@@ -253,6 +253,12 @@ pub struct TextFormat {
     pub delimiter: Delimiter,
     /// Whether numbers are written `0,5`.
     pub decimal_comma: bool,
+}
+
+impl TextFormat {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// What stands between two cells.

@@ -2,6 +2,7 @@
 
 mod error;
 mod geometry;
+mod guess;
 mod instrument;
 mod layout;
 mod peak;
@@ -12,12 +13,14 @@ mod thin_film_law;
 
 pub use error::{Place, TableError, TableProblem};
 pub use geometry::Geometry;
+pub use guess::{Certainty, Guess, GuessNote, guess_layout};
 pub use instrument::{Aperture, Band, Calibration, Instrument};
 pub use layout::{
     AngleUnit, Angles, Cell, Delimiter, FourAngles, LongColumns, Negative, PeaksLayout, PerColumn, SigmaLayout, Source,
     SpectraColumns, SpectraLayout, TableLayout, TextFormat, WavelengthUnit, WideAngles, WideColumns,
 };
 pub use peak::{Peak, PeakModel, find_peaks, mirror_cosine};
-pub use read::{read_peaks, read_spectra, read_table};
+pub use read::read_table;
 pub use table::{GonioTable, PeakReading, PeakTable, Quantity, Spectrum, Table};
+pub use text::TableText;
 pub use thin_film_law::{PhaseJumps, ThinFilmLaw, ThinFilmLawDesign};

@@ -21,20 +21,33 @@ const PREFIX: usize = 1 << 16;
 /// Longest piece of a cell that an error message repeats, characters.
 const SHOWN_CELL: usize = 40;
 
-/// A table file's text, checked and made uniform.
-pub(super) struct Text {
+/// A table file's text, checked and made uniform, not yet understood.
+#[derive(Debug, Clone)]
+pub struct TableText {
     pub(super) file: PathBuf,
     content: String,
 }
 
-impl Text {
+impl TableText {
     /// Reads the file.
-    pub(super) fn load(path: &Path) -> Result<Self, TableError> {
+    ///
+    /// # Errors
+    ///
+    /// If there is no such file, or it is no text, or larger than a table can be. Whatever its size, no more of it is
+    /// held than 256 MiB.
+    pub fn load(path: &Path) -> Result<Self, TableError> {
+        let bytes = read_bytes(path).map_err(|problem| TableError::new(path, Place::File, problem))?;
+        Self::from_bytes(path, bytes)
+    }
+
+    /// The same of bytes that were read from the file before.
+    ///
+    /// # Errors
+    ///
+    /// If they are no text.
+    pub fn from_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, TableError> {
         let error = |place, problem| TableError::new(path, place, problem);
-        let bytes = read_bytes(path).map_err(|problem| error(Place::File, problem))?;
-        if let Some(offset) = bytes.iter().position(|&byte| byte == 0) {
-            return Err(error(Place::File, TableProblem::ZeroByte { offset }));
-        }
+        check_bytes(&bytes).map_err(|problem| error(Place::File, problem))?;
         let text = match String::from_utf8(bytes) {
             Ok(text) => text,
             Err(invalid) => {
@@ -233,21 +246,24 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, TableProblem> {
     let file = File::open(path).map_err(unreadable)?;
     let mut bytes = Vec::new();
     (&file).take(PREFIX as u64).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.is_empty() {
-        return Err(TableProblem::Empty);
-    }
-    if let Some((_, found)) = OTHER_FORMATS.iter().find(|(start, _)| bytes.starts_with(start)) {
-        return Err(TableProblem::OtherFormat { found });
-    }
-    if let Some(offset) = bytes.iter().position(|&byte| byte == 0) {
-        return Err(TableProblem::ZeroByte { offset });
-    }
+    check_bytes(&bytes)?;
     if kind.len() > FILE_LIMIT {
         return Err(TableProblem::TooLarge { bytes: kind.len(), limit: FILE_LIMIT });
     }
     // The file may have grown since it was looked at.
     (&file).take(FILE_LIMIT).read_to_end(&mut bytes).map_err(unreadable)?;
     Ok(bytes)
+}
+
+/// Whether these bytes can be the start of a text.
+fn check_bytes(bytes: &[u8]) -> Result<(), TableProblem> {
+    if let Some((_, found)) = OTHER_FORMATS.iter().find(|(start, _)| bytes.starts_with(start)) {
+        return Err(TableProblem::OtherFormat { found });
+    }
+    match bytes.iter().position(|&byte| byte == 0) {
+        Some(offset) => Err(TableProblem::ZeroByte { offset }),
+        None => Ok(()),
+    }
 }
 
 /// First bytes of files that people take for tables.

@@ -83,6 +83,10 @@ pub(super) fn geometry(angles: WrittenAngles, unit: AngleUnit) -> Result<Geometr
             Geometry { theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg }
         }
     };
+    // No cell gives NaN; a job that was made for its author to complete does.
+    if [geometry.theta_i_deg, geometry.phi_i_deg, geometry.theta_o_deg, geometry.phi_o_deg].iter().any(|a| a.is_nan()) {
+        return Err(TableProblem::AngleMissing);
+    }
     for found in [geometry.theta_i_deg, geometry.theta_o_deg] {
         if !(0.0..90.0).contains(&found) {
             return Err(TableProblem::InclinationRange { found });

@@ -1,8 +1,9 @@
 //! Names of columns in a layout, turned into places in a row.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
-use crate::measure::error::{TableError, TableProblem};
+use crate::measure::error::{Place, TableError, TableProblem};
 use crate::measure::layout::{Angles, Cell, Source};
 use crate::measure::text::{Row, Rows};
 
@@ -40,7 +41,7 @@ impl Number {
 }
 
 /// Angles as written: θi, φi, θo, φo in the file's unit, or θ of a mirror geometry.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub(super) enum WrittenAngles {
     Mirror(f64),
     Four([f64; 4]),
@@ -81,8 +82,8 @@ impl AnglesOf {
         })
     }
 
-    pub(super) fn of(&self, row: &Row<'_>, rows_file: &std::path::Path) -> Result<WrittenAngles, TableError> {
-        let number = |number: Number| number.of(row).map_err(|problem| at(rows_file, row, number.column(), problem));
+    pub(super) fn of(&self, row: &Row<'_>, file: &Path) -> Result<WrittenAngles, TableError> {
+        let number = |number: Number| number.of(row).map_err(|problem| at(file, row, number.column(), problem));
         Ok(match self {
             Self::Mirror(theta) => WrittenAngles::Mirror(number(*theta)?),
             Self::Four([theta_i, phi_i, theta_o, phi_o]) => {
@@ -114,8 +115,7 @@ impl<'a> Only<'a> {
 }
 
 /// An error at a cell, or at the row where no column is to blame.
-pub(super) fn at(file: &std::path::Path, row: &Row<'_>, column: Option<usize>, problem: TableProblem) -> TableError {
-    use crate::measure::error::Place;
+pub(super) fn at(file: &Path, row: &Row<'_>, column: Option<usize>, problem: TableProblem) -> TableError {
     let place = column.map_or(Place::Line(row.line), |column| row.place(column));
     TableError::new(file, place, problem)
 }

@@ -59,7 +59,8 @@ pub(super) fn collect(
             }
         };
         let spectrum = &mut written.spectra[index];
-        if spectrum.angles != angles {
+        // Compared by their bits, since angles that a job leaves open are NaN.
+        if spectrum.angles.bits() != angles.bits() {
             let id = spectrum.id.clone().unwrap_or_default();
             let problem = TableProblem::IdWithTwoGeometries { id, first_line: spectrum.first_line };
             return Err(at(file, &row, id_column, problem));

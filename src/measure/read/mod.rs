@@ -8,24 +8,23 @@ mod peaks;
 mod spectra;
 mod wide;
 
-use std::path::Path;
-
-pub use peaks::read_peaks;
-pub use spectra::read_spectra;
+use peaks::read_peaks;
+use spectra::read_spectra;
 
 use super::error::TableError;
 use super::layout::TableLayout;
 use super::table::Table;
+use super::text::TableText;
 
-/// Reads and checks the table at `path`.
+/// Reads and checks a table.
 ///
 /// # Errors
 ///
 /// Whatever keeps the table from being what its layout says, with file, line and column: see
 /// [`TableProblem`](super::TableProblem).
-pub fn read_table(path: &Path, layout: &TableLayout) -> Result<Table, TableError> {
+pub fn read_table(text: &TableText, layout: &TableLayout) -> Result<Table, TableError> {
     match layout {
-        TableLayout::Spectra(layout) => read_spectra(path, layout).map(Table::Spectra),
-        TableLayout::Peaks(layout) => read_peaks(path, layout).map(Table::Peaks),
+        TableLayout::Spectra(layout) => read_spectra(text, layout).map(Table::Spectra),
+        TableLayout::Peaks(layout) => read_peaks(text, layout).map(Table::Peaks),
     }
 }

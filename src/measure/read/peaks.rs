@@ -7,7 +7,7 @@ use super::columns::{AnglesOf, Only, WrittenAngles, at};
 use crate::measure::error::{Place, TableError, TableProblem};
 use crate::measure::layout::PeaksLayout;
 use crate::measure::table::{PeakReading, PeakTable};
-use crate::measure::text::{Row, Text};
+use crate::measure::text::{Row, TableText};
 
 /// Orders above this are slips: a film with a hundred maxima in view is 30 µm thick.
 const LARGEST_ORDER: f64 = 100.0;
@@ -23,15 +23,12 @@ struct WrittenPeak {
 }
 
 /// Reads and checks a peak table.
-///
-/// # Errors
-///
-/// As [`read_table`](super::read_table).
-pub fn read_peaks(path: &Path, layout: &PeaksLayout) -> Result<PeakTable, TableError> {
+pub(super) fn read_peaks(text: &TableText, layout: &PeaksLayout) -> Result<PeakTable, TableError> {
+    let path = &text.file;
     if let Some(sigma) = &layout.sigma {
         checks::check_sigma(sigma).map_err(|problem| TableError::new(path, Place::File, problem))?;
     }
-    let peaks = collect(path, layout)?;
+    let peaks = collect(text, layout)?;
     let wavelengths = peaks.iter().map(|peak| peak.wavelength);
     let factor = checks::wavelength_factor(path, layout.wavelength_unit, Some(&layout.wavelength), wavelengths)?;
     let unit = checks::angle_unit(path, layout.angle_unit, peaks.iter().map(|peak| peak.angles))?;
@@ -56,8 +53,8 @@ pub fn read_peaks(path: &Path, layout: &PeaksLayout) -> Result<PeakTable, TableE
     Ok(PeakTable { readings })
 }
 
-fn collect(path: &Path, layout: &PeaksLayout) -> Result<Vec<WrittenPeak>, TableError> {
-    let text = Text::load(path)?;
+fn collect(text: &TableText, layout: &PeaksLayout) -> Result<Vec<WrittenPeak>, TableError> {
+    let path = &text.file;
     let mut rows = text.rows(layout.text)?;
     let angles_of = AnglesOf::find(&layout.angles, &rows)?;
     let wavelength_column = rows.column(&layout.wavelength)?;

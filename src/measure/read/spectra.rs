@@ -8,7 +8,7 @@ use super::{checks, long, wide};
 use crate::measure::error::{Place, TableError, TableProblem};
 use crate::measure::layout::{Negative, SpectraColumns, SpectraLayout};
 use crate::measure::table::{GonioTable, Quantity, Spectrum};
-use crate::measure::text::Text;
+use crate::measure::text::TableText;
 
 /// Ratios to a white standard above this are percents. A mirror-like sample may well send more light into a small
 /// detector than a white one; three times as much has to be said on purpose.
@@ -56,13 +56,9 @@ struct Reading {
 }
 
 /// Reads and checks a table of spectra.
-///
-/// # Errors
-///
-/// As [`read_table`](super::read_table).
-pub fn read_spectra(path: &Path, layout: &SpectraLayout) -> Result<GonioTable, TableError> {
+pub(super) fn read_spectra(text: &TableText, layout: &SpectraLayout) -> Result<GonioTable, TableError> {
+    let path = &text.file;
     check_keys(layout).map_err(|problem| TableError::new(path, Place::File, problem))?;
-    let text = Text::load(path)?;
     let rows = text.rows(layout.text)?;
     let written = match &layout.columns {
         SpectraColumns::Long(columns) => long::collect(rows, layout, columns)?,
