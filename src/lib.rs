@@ -9,3 +9,4 @@ pub mod job;
 pub mod measure;
 pub mod optics;
 pub mod parameter;
+pub mod report;
