@@ -2,7 +2,7 @@
 
 use super::outcome::{Case, Outcome};
 use crate::fit::{Bound, Estimate, Fit, StopReason};
-use crate::number::{percent, with_error};
+use crate::number::with_error;
 
 /// A rival minimum with more than this share of the best one's weight is named.
 const RIVAL_SHARE: f64 = 0.05;
@@ -94,7 +94,7 @@ fn value_text(estimate: &Estimate) -> String {
         (None, _) => {}
     }
     match estimate.standard_error {
-        Some(error) if !estimate.open => format!("{name} = {}{unit}", with_error(estimate.value, error)),
+        Some(error) if !estimate.open => format!("{name} = {}{unit}", with_error(estimate.value, Some(error))),
         _ => format!("{name} near {:.4}{unit}, not determined", estimate.value),
     }
 }
@@ -124,6 +124,10 @@ fn rivals(fit: &Fit) -> Option<String> {
         })
         .collect();
     Some(format!("Rivals that the data do not rule out, with their share of the best one's weight: {}.", texts.join(", ")))
+}
+
+fn percent(share: f64) -> String {
+    if share < 0.095 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0} %", 100.0 * share) }
 }
 
 fn list(items: &[String]) -> String {

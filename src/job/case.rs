@@ -14,7 +14,7 @@ use crate::bsdf::Model;
 use crate::bsdf::coated_base::{CoatedBase, Design};
 use crate::fit::{Assignment, Control, Fit, Loss, Prior, Residuals, Role, fit, parse_tie};
 use crate::measure::{
-    Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, ThinFilmLaw, read_table,
+    Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, TableText, ThinFilmLaw, read_table,
 };
 use crate::parameter::{Parameter, Spread};
 
@@ -44,10 +44,9 @@ pub(super) fn read_data(data: &DataFile, folder: &Path, file: &JobFile) -> Resul
     let mut table = match (&data.file, &data.layout, &data.synthetic) {
         (Some(name), Some(layout), None) => {
             let path = resolve(name, folder)?;
-            let table = read_table(&path, layout)?;
-            let bytes = std::fs::read(&path).map_err(|error| JobError::key("data.file", error.to_string()))?;
-            input = Some(input_file(&path, &bytes));
-            table
+            let text = TableText::load(&path)?;
+            input = Some(input_file(&path, text.content()));
+            read_table(&text, layout)?
         }
         (None, None, Some(recipe)) => Table::Spectra(synthetic::readings(recipe, file)?),
         (Some(_), None, None) => {

@@ -4,5 +4,6 @@ mod coverage;
 mod data;
 mod nist;
 mod optics;
+mod report;
 mod tables;
 mod twins;
