@@ -45,7 +45,9 @@ pub(super) fn read_data(data: &DataFile, folder: &Path, file: &JobFile) -> Resul
         (Some(name), Some(layout), None) => {
             let path = resolve(name, folder)?;
             let text = TableText::load(&path)?;
-            input = Some(input_file(&path, text.content()));
+            // Read once more for its hash, which must be that of the bytes as they are; the size has been checked.
+            let bytes = std::fs::read(&path).map_err(|error| JobError::key("data.file", error.to_string()))?;
+            input = Some(input_file(&path, &bytes));
             read_table(&text, layout)?
         }
         (None, None, Some(recipe)) => Table::Spectra(synthetic::readings(recipe, file)?),

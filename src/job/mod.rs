@@ -4,6 +4,7 @@ mod answer;
 mod case;
 mod catalogue;
 mod describe;
+mod draft;
 mod error;
 mod file;
 mod film_peaks;
@@ -22,6 +23,7 @@ mod synthetic;
 pub use case::CheckedCase;
 pub use catalogue::{ModelEntry, models};
 pub use describe::describe;
+pub use draft::draft;
 pub use error::JobError;
 pub use file::{
     AlternativeFile, DataFile, FreeFile, JobFile, ModelFile, ParameterFile, PriorFile, SyntheticFile,
