@@ -1,1 +1,2 @@
+mod coated_base;
 mod optics;
