@@ -57,7 +57,7 @@ fn study(item: u64) -> Verdict {
         [model]
         kind = "coated-base"
         layers = [{{ name = "film", material = "keratin", thickness_nm = 300 }}]
-        substrate = "bird melanin"
+        substrate = "bird_melanin"
         [parameters]
         "film.thickness_nm" = {{ lower = 50, upper = 2000 }}
         "#,

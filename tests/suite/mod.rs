@@ -1,5 +1,6 @@
 //! Table of contents.
 
+mod coated_base;
 mod coverage;
 mod data;
 mod nist;

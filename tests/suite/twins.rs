@@ -19,10 +19,10 @@ struct Set {
 }
 
 const SETS: [Set; 5] = [
-    Set { film: "keratin", base: "bird melanin", angle_deg: 27.0, truth_nm: 330.0 },
-    Set { film: "keratin", base: "bird melanin", angle_deg: 0.0, truth_nm: 450.0 },
+    Set { film: "keratin", base: "bird_melanin", angle_deg: 27.0, truth_nm: 330.0 },
+    Set { film: "keratin", base: "bird_melanin", angle_deg: 0.0, truth_nm: 450.0 },
     Set { film: "keratin", base: "air", angle_deg: 45.0, truth_nm: 610.0 },
-    Set { film: "chitin", base: "insect melanin", angle_deg: 35.0, truth_nm: 260.0 },
+    Set { film: "chitin", base: "insect_melanin", angle_deg: 35.0, truth_nm: 260.0 },
     Set { film: "chitin", base: "air", angle_deg: 60.0, truth_nm: 780.0 },
 ];
 
@@ -31,8 +31,8 @@ fn index(material: &str, nm: f64) -> Complex64 {
     match material {
         "keratin" => Complex64::new(1.532 + 5890.0 / (nm * nm), 0.0),
         "chitin" => Complex64::new(1.517 + 8800.0 / (nm * nm), 0.0),
-        "bird melanin" => Complex64::new(1.648 + 23_700.0 / (nm * nm), 0.56 * (-nm / 270.0).exp()),
-        "insect melanin" => Complex64::new(1.56 + 36_000.0 / (nm * nm), 1.62 * (-nm / 142.0).exp()),
+        "bird_melanin" => Complex64::new(1.648 + 23_700.0 / (nm * nm), 0.56 * (-nm / 270.0).exp()),
+        "insect_melanin" => Complex64::new(1.56 + 36_000.0 / (nm * nm), 1.62 * (-nm / 142.0).exp()),
         _ => Complex64::new(1.0, 0.0),
     }
 }
