@@ -1,6 +1,7 @@
 //! Peak wavelengths of a film or stack, found on the full model's own spectrum.
 
 use super::JobError;
+use crate::bsdf::Model;
 use crate::bsdf::coated_base::{CoatedBase, Design};
 use crate::measure::{Geometry, Peak, PeakModel, find_peaks, mirror_cosine};
 use crate::parameter::Parameter;
@@ -19,14 +20,14 @@ pub(super) struct FilmPeaks {
 impl FilmPeaks {
     /// The design's peaks no shorter than `shortest_nm`.
     pub(super) fn new(design: &Design, shortest_nm: f64) -> Result<Self, JobError> {
-        use crate::bsdf::Model;
         let model = CoatedBase::new(design, &[shortest_nm])?;
-        if model.layer_count() == 0 {
+        if design.layers.is_empty() {
             let problem = "a plain interface has no peaks; give the model a layer";
             return Err(JobError::key("model.layers", problem));
         }
         let declared = model.parameters();
-        let moving: Vec<Parameter> = declared.iter().filter(|p| CoatedBase::moves_peaks(&p.name)).cloned().collect();
+        let moving = declared.iter().enumerate().filter(|(index, _)| model.moves_peaks(*index));
+        let moving = moving.map(|(_, parameter)| parameter.clone()).collect();
         let defaults = declared.iter().map(|parameter| parameter.default).collect();
         Ok(Self { model, moving, defaults })
     }

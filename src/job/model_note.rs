@@ -1,9 +1,10 @@
 //! What a methods section says of a case's model and instrument.
 
 use super::file::ModelFile;
-use super::outcome::{ModelNote, Reference};
+use super::outcome::ModelNote;
 use super::{JobError, JobFile};
 use crate::bsdf::coated_base::CoatedBase;
+use crate::optics::Reference;
 use crate::measure::{Calibration, Instrument, PhaseJumps};
 
 /// Sentences, materials and works to cite.
@@ -30,7 +31,15 @@ pub(super) fn model_note(file: &JobFile) -> Result<ModelNote, JobError> {
                 }],
             }
         }
-        ModelFile::CoatedBase(design) => CoatedBase::new(design, &[500.0])?.note(),
+        ModelFile::CoatedBase(design) => {
+            let described = CoatedBase::new(design, &[500.0])?.describe();
+            ModelNote {
+                kind: "coated-base".into(),
+                text: described.text,
+                materials: described.materials,
+                references: described.references,
+            }
+        }
     };
     let text = format!("{} {}", note.text, instrument_text(&file.instrument));
     Ok(ModelNote { text: text.trim().to_owned(), ..note })

@@ -24,7 +24,7 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
     };
     let seen = part(table, |index| fitted[index]);
     let incidences_deg = incidences(&seen);
-    if !design.has_layers() || incidences_deg.len() < FEWEST_INCIDENCES {
+    if design.layers.is_empty() || incidences_deg.len() < FEWEST_INCIDENCES {
         return Ok(None);
     }
     let with = &case.file;
