@@ -40,7 +40,7 @@
 //! Levenberg 1944, Quart. Appl. Math. 2, 164. Marquardt 1963, J. SIAM 11, 431. Nielsen 1999, IMM-REP-1999-05.
 //! Moré 1978, Lecture Notes in Mathematics 630, 105 (column scaling).
 
-use argmin::core::{Error, IterState, KV, Problem, Solver, State, TerminationReason, TerminationStatus};
+use argmin::core::{Error, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus};
 use argmin::kv;
 use nalgebra::DVector;
 
@@ -68,6 +68,14 @@ const LAST_DAMPING: f64 = 1e24;
 /// Promise, per row, below which travelling ends.
 const SETTLING: f64 = 1e-5;
 
+/// A change of a parameter by its own size is damped at least as much as this share of the rows' length.
+const RELATIVE_CHANGE: f64 = 0.3;
+/// Share of a step at which the rows are probed for their bend.
+const PROBE: f64 = 0.1;
+/// A step whose bend is longer than this share of it leaves the region in which the linear model is any guide
+/// (Transtrum & Sethna 2012, section 4: 0.75 for twice the ratio).
+const MOST_BEND: f64 = 0.375;
+
 /// The solver with its buffers.
 #[derive(Debug)]
 pub(super) struct LeastSquares<'a> {
@@ -77,12 +85,15 @@ pub(super) struct LeastSquares<'a> {
     accuracy: Accuracy,
     damping: f64,
     growth: f64,
+    /// Damping of the last step that helped.
+    helpful: f64,
     /// Rows at the present point, before the loss.
     rows: Vec<f64>,
     trial: Vec<f64>,
     values: Vec<f64>,
     jacobian: Vec<f64>,
     right: Vec<f64>,
+    here: Vec<f64>,
     scale: Vec<f64>,
     /// Smallest settled step so far, relative, and how many have not been smaller since.
     smallest: f64,
@@ -100,11 +111,13 @@ impl<'a> LeastSquares<'a> {
             accuracy: Accuracy::Travel,
             damping: FIRST_DAMPING,
             growth: 2.0,
+            helpful: FIRST_DAMPING,
             rows: vec![0.0; rows],
             trial: vec![0.0; rows],
             values: vec![0.0; objective.residuals.parameters().len()],
             jacobian: vec![0.0; rows * free],
             right: vec![0.0; rows],
+            here: vec![0.0; rows],
             scale: vec![0.0; free],
             smallest: f64::INFINITY,
             idle: 0,
@@ -144,6 +157,14 @@ impl<'a> LeastSquares<'a> {
         (0..free.len()).map(held).collect()
     }
 
+    /// Makes the damping see at least relative changes: where a column vanishes (an exponential that has died out), its
+    /// length alone would let its parameter run away to where nothing brings it back.
+    fn limit_relative_change(&mut self, objective: &Objective<'_>, free: &[f64], cost: f64) {
+        for ((scale, x), parameter) in self.scale.iter_mut().zip(free).zip(&objective.mapping.free) {
+            *scale = scale.max(RELATIVE_CHANGE * cost.sqrt() / x.abs().max(1e-3 * parameter.scale));
+        }
+    }
+
     /// One iteration: linearise, then shorten the step until it helps.
     fn iterate(&mut self, objective: &Objective<'_>, free: &mut Vec<f64>, cost: &mut f64) {
         let model = self.linearise(objective, free);
@@ -151,6 +172,7 @@ impl<'a> LeastSquares<'a> {
         for (scale, &length) in self.scale.iter_mut().zip(&lengths) {
             *scale = if length > 0.0 { length } else { 1.0 };
         }
+        self.limit_relative_change(objective, free, *cost);
         let held = self.held(free, &model.gradient());
         let full = model.step(free, &self.bounds, &held, &self.scale, 0.0);
         #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
@@ -169,39 +191,38 @@ impl<'a> LeastSquares<'a> {
                 return;
             }
             (Finish::Settled, Accuracy::Settled) if promise <= SETTLING => {
-                return self.settle(objective, free, cost, &full);
+                if self.settle(objective, free, cost, &full) {
+                    return;
+                }
             }
             _ => {}
         }
         self.descend(objective, free, cost, &model, &held);
     }
 
-    /// A full step near the minimum, taken unless it makes the cost worse than rounding can.
-    fn settle(&mut self, objective: &Objective<'_>, free: &mut Vec<f64>, cost: &mut f64, step: &Step) {
+    /// A full step near the minimum, or the end; false where a full step makes the cost worse than rounding can.
+    fn settle(&mut self, objective: &Objective<'_>, free: &mut Vec<f64>, cost: &mut f64, step: &Step) -> bool {
         let relative = |(x, change): (&f64, &f64)| change.abs() / x.abs().max(f64::MIN_POSITIVE);
         let size = free.iter().zip(&step.change).map(relative).fold(0.0, f64::max);
+        if size <= 4.0 * f64::EPSILON || self.idle >= 3 {
+            self.stop = Some(StopReason::Converged);
+            return true;
+        }
+        let aim = step.aim(free, &self.bounds);
+        let finite = objective.evaluate(&aim, &mut self.values, &mut self.trial);
+        let there = if finite { objective.cost(&self.trial) } else { f64::INFINITY };
+        if there > *cost * (1.0 + 1e-9) {
+            return false;
+        }
         if size < 0.9 * self.smallest {
             (self.smallest, self.idle) = (size, 0);
         } else {
             self.idle += 1;
         }
-        if size <= 4.0 * f64::EPSILON || self.idle >= 3 {
-            self.stop = Some(StopReason::Converged);
-            return;
-        }
-        let aim = step.aim(free, &self.bounds);
-        if !objective.evaluate(&aim, &mut self.values, &mut self.trial) {
-            self.stop = Some(StopReason::Stalled);
-            return;
-        }
-        let there = objective.cost(&self.trial);
-        if there > *cost * (1.0 + 1e-9) {
-            self.stop = Some(if self.smallest < 1e-6 { StopReason::Converged } else { StopReason::Stalled });
-            return;
-        }
         std::mem::swap(&mut self.rows, &mut self.trial);
         *free = aim;
         *cost = there;
+        true
     }
 
     /// Damped steps, shorter and shorter, until one lowers the cost.
@@ -218,7 +239,13 @@ impl<'a> LeastSquares<'a> {
                 self.stop = Some(StopReason::Cancelled);
                 return;
             }
-            let step = model.step(free, &self.bounds, held, &self.scale, self.damping);
+            let mut step = model.step(free, &self.bounds, held, &self.scale, self.damping);
+            if !self.bend(objective, free, model, &mut step) {
+                if !self.shorten() {
+                    return self.exhausted();
+                }
+                continue;
+            }
             let aim = step.aim(free, &self.bounds);
             let finite = aim != *free && objective.evaluate(&aim, &mut self.values, &mut self.trial);
             let there = if finite { objective.cost(&self.trial) } else { f64::INFINITY };
@@ -227,24 +254,43 @@ impl<'a> LeastSquares<'a> {
                 std::mem::swap(&mut self.rows, &mut self.trial);
                 *free = aim;
                 *cost = there;
+                self.helpful = self.damping;
                 self.damping *= (1.0 - (2.0 * ratio.min(1.0) - 1.0).powi(3)).max(1.0 / 3.0);
                 self.damping = self.damping.max(1e-20);
                 self.growth = 2.0;
                 return;
             }
-            self.damping *= self.growth;
-            self.growth *= 2.0;
-            if self.damping > LAST_DAMPING {
+            if !self.shorten() {
                 return self.exhausted();
             }
         }
+    }
+
+    /// Raises the damping; false when it has no more use.
+    fn shorten(&mut self) -> bool {
+        self.damping *= self.growth;
+        self.growth *= 2.0;
+        self.damping <= LAST_DAMPING
+    }
+
+    /// Bends the step where the rows do; false where they bend too much for a step of this length.
+    fn bend(&mut self, objective: &Objective<'_>, free: &[f64], model: &LinearModel, step: &mut Step) -> bool {
+        let probe: Vec<f64> = free.iter().zip(&step.change).map(|(x, change)| x + PROBE * change).collect();
+        if !objective.evaluate(&probe, &mut self.values, &mut self.trial) {
+            return false;
+        }
+        objective.transform(&mut self.trial);
+        self.here.copy_from_slice(&self.rows);
+        objective.transform(&mut self.here);
+        let bend = model.bend(step, &self.jacobian, &self.here, &mut self.trial, PROBE, &self.scale, self.damping);
+        bend <= MOST_BEND
     }
 
     /// No step helped: with better derivatives one may; with the best ones the solver has stalled.
     fn exhausted(&mut self) {
         if self.accuracy == Accuracy::Travel && self.finish == Finish::Settled {
             self.accuracy = Accuracy::Settled;
-            (self.damping, self.growth) = (FIRST_DAMPING, 2.0);
+            (self.damping, self.growth) = (self.helpful, 2.0);
         } else {
             self.stop = Some(StopReason::Stalled);
         }

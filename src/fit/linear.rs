@@ -17,12 +17,14 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// Turns `matrix` (rows × columns, rows ≥ columns) into the triangle R of its QR factorisation and `right` into Qᵀ·right,
 /// by Householder reflections (Golub & Van Loan 2013, algorithm 5.2.1).
 ///
-/// R stands in the upper triangle; what is below it is left over. A column without any length gives a zero on the
+/// R stands in the upper triangle, the reflections below it, and their first components are returned: what
+/// [`reflect`] needs to apply Qᵀ once more. A column without any length gives a zero on the
 /// diagonal. Backward stable: the error is that of a change of each column by a few units of rounding.
-pub(super) fn triangularise(matrix: &mut [f64], rows: usize, right: &mut [f64]) {
+pub(super) fn triangularise(matrix: &mut [f64], rows: usize, right: &mut [f64]) -> Vec<f64> {
     debug_assert!(rows > 0 && matrix.len().is_multiple_of(rows) && right.len() == rows, "shapes must agree");
     let columns = matrix.len() / rows;
     debug_assert!(columns <= rows, "a wide matrix has no triangle");
+    let mut heads = vec![0.0; columns];
     for k in 0..columns {
         let (head, rest) = matrix[k * rows..].split_at_mut(rows);
         let v = &mut head[k..];
@@ -34,15 +36,32 @@ pub(super) fn triangularise(matrix: &mut [f64], rows: usize, right: &mut [f64]) 
         // The sign that avoids cancellation in the first component.
         let diagonal = -length.copysign(v[0]);
         v[0] -= diagonal;
-        let factor = -1.0 / (diagonal * v[0]);
+        heads[k] = v[0];
+        let factor = 1.0 / (diagonal * v[0]);
         let others = rest.chunks_exact_mut(rows).map(|column| &mut column[k..]);
         for column in others.chain(std::iter::once(&mut right[k..])) {
-            let shift = -factor * dot(v, column);
-            for (value, direction) in column.iter_mut().zip(v.iter()) {
-                *value += shift * direction;
-            }
+            add(column, factor * dot(v, column), v);
         }
         v[0] = diagonal;
+    }
+    heads
+}
+
+/// Turns `right` into Qᵀ·right, for a matrix that [`triangularise`] has factorised with these heads.
+pub(super) fn reflect(matrix: &[f64], rows: usize, heads: &[f64], right: &mut [f64]) {
+    for (k, &head) in heads.iter().enumerate().filter(|head| *head.1 != 0.0) {
+        let column = &matrix[k * rows + k..(k + 1) * rows];
+        let right = &mut right[k..];
+        let shift = (head * right[0] + dot(&column[1..], &right[1..])) / (column[0] * head);
+        right[0] += shift * head;
+        add(&mut right[1..], shift, &column[1..]);
+    }
+}
+
+/// target += factor · direction.
+fn add(target: &mut [f64], factor: f64, direction: &[f64]) {
+    for (value, direction) in target.iter_mut().zip(direction) {
+        *value += factor * direction;
     }
 }
 

@@ -118,6 +118,13 @@ impl<'a> Objective<'a> {
         readings.iter().map(|&r| self.loss.rho(r)).sum::<f64>() + dot(priors, priors)
     }
 
+    /// Puts rows through the loss, priors excepted.
+    pub(super) fn transform(&self, rows: &mut [f64]) {
+        if !self.loss.is_squares() {
+            rows[..self.readings].iter_mut().for_each(|row| *row = self.loss.transformed(*row));
+        }
+    }
+
     /// Evaluations so far, and how many were not finite.
     pub(super) fn counts(&self) -> (u64, u64) {
         (self.counters.evaluations.load(Ordering::Relaxed), self.counters.not_finite.load(Ordering::Relaxed))

@@ -1,7 +1,7 @@
 //! One damped step of least squares inside bounds, on the triangle of the Jacobian.
 
 use super::differences::Bounds;
-use super::linear::{back_substitute, dot, triangularise};
+use super::linear::{back_substitute, dot, reflect, triangularise};
 
 /// The linear model of the rows at a point: ‖R·δ + q‖² plus what no step can change.
 #[derive(Debug, Clone)]
@@ -11,6 +11,8 @@ pub(super) struct LinearModel {
     /// First entries of Qᵀ·rows.
     right: Vec<f64>,
     size: usize,
+    /// First components of the reflections, for [`LinearModel::project`].
+    heads: Vec<f64>,
 }
 
 /// A step and what the linear model says of it.
@@ -19,6 +21,8 @@ pub(super) struct Step {
     pub(super) change: Vec<f64>,
     /// The bound that each parameter is put on exactly, if it is.
     pub(super) landing: Vec<Option<f64>>,
+    /// Parameters that moved freely.
+    open: Vec<usize>,
     /// Predicted fall of ‖rows‖².
     pub(super) predicted: f64,
 }
@@ -47,12 +51,12 @@ impl LinearModel {
             }
             return Self::new(&mut tall, &mut right);
         }
-        triangularise(jacobian, count, rows);
+        let heads = triangularise(jacobian, count, rows);
         let mut triangle = vec![0.0; size * size];
         for j in 0..size {
             triangle[j * size..j * size + j + 1].copy_from_slice(&jacobian[j * count..j * count + j + 1]);
         }
-        Self { triangle, right: rows[..size].to_vec(), size }
+        Self { triangle, right: rows[..size].to_vec(), size, heads }
     }
 
     /// Upper triangle, column-major.
@@ -80,12 +84,9 @@ impl LinearModel {
         let mut change = vec![0.0; size];
         let mut settled = held.to_vec();
         let mut landing = vec![None; size];
-        loop {
+        let open = loop {
             let open: Vec<usize> = (0..size).filter(|&j| !settled[j]).collect();
-            if open.is_empty() {
-                break;
-            }
-            let solution = self.solve(&open, &change, &settled, scale, damping);
+            let solution = self.solve(&open, &self.pull(&change, &settled), scale, damping);
             let mut left = false;
             for (&j, &value) in open.iter().zip(&solution) {
                 let aim = free[j] + value;
@@ -101,36 +102,81 @@ impl LinearModel {
                 for (&j, &value) in open.iter().zip(&solution) {
                     change[j] = value;
                 }
-                break;
+                break open;
             }
-        }
+        };
         let predicted = self.fall(&change);
-        Step { change, landing, predicted }
+        Step { change, landing, predicted, open }
     }
 
-    /// ‖q‖² − ‖R·δ + q‖².
-    fn fall(&self, change: &[f64]) -> f64 {
+    /// Curves a step towards where the rows bend (geodesic acceleration; Transtrum & Sethna 2012): `there` are the rows
+    /// at share `share` of the step, `here` those at its foot, `factor` the factorised Jacobian. Returns the length of
+    /// the bend relative to that of the step, in `scale`; the step is only bent where that is small.
+    pub(super) fn bend(
+        &self,
+        step: &mut Step,
+        factor: &[f64],
+        here: &[f64],
+        there: &mut [f64],
+        share: f64,
+        scale: &[f64],
+        damping: f64,
+    ) -> f64 {
+        for (there, here) in there.iter_mut().zip(here) {
+            *there = (*there - here) / share;
+        }
+        reflect(factor, there.len(), &self.heads, there);
+        // Second derivative along the step, halved: (Δr/share − J·δ)/share.
+        let linear = self.image(&step.change);
+        let curve: Vec<f64> = there.iter().zip(&linear).map(|(a, b)| (a - b) / share).collect();
+        let bend = self.solve(&step.open, &curve, scale, damping);
+        let length = |value: f64, j: usize| (value * scale[j]) * (value * scale[j]);
+        let bent: f64 = step.open.iter().zip(&bend).map(|(&j, &value)| length(value, j)).sum();
+        let straight: f64 = step.change.iter().enumerate().map(|(j, &value)| length(value, j)).sum();
+        for (&j, value) in step.open.iter().zip(&bend) {
+            step.change[j] += value;
+        }
+        (bent / straight).sqrt()
+    }
+
+    /// R·change.
+    fn image(&self, change: &[f64]) -> Vec<f64> {
         let mut moved = vec![0.0; self.size];
         for (column, &value) in self.triangle.chunks_exact(self.size).zip(change) {
             for (sum, entry) in moved.iter_mut().zip(column) {
                 *sum += entry * value;
             }
         }
+        moved
+    }
+
+    /// What the open parameters still have to match: q and what the settled ones add to it.
+    fn pull(&self, change: &[f64], settled: &[bool]) -> Vec<f64> {
+        let mut right = self.right.clone();
+        for j in (0..self.size).filter(|&j| settled[j] && change[j] != 0.0) {
+            for (value, entry) in right.iter_mut().zip(&self.triangle[j * self.size..(j + 1) * self.size]) {
+                *value += entry * change[j];
+            }
+        }
+        right
+    }
+
+    /// ‖q‖² − ‖R·δ + q‖².
+    fn fall(&self, change: &[f64]) -> f64 {
+        let moved = self.image(change);
         // −‖Rδ‖² − 2 (Rδ)·q, which keeps its digits where the difference of two squares would not.
         -dot(&moved, &moved) - 2.0 * dot(&moved, &self.right)
     }
 
-    /// The damped solution for the `open` parameters, the settled ones being moved by `change`.
-    fn solve(&self, open: &[usize], change: &[f64], settled: &[bool], scale: &[f64], damping: f64) -> Vec<f64> {
+    /// The open parameters that minimise ‖R·x + pull‖² + damping·‖scale·x‖².
+    fn solve(&self, open: &[usize], pull: &[f64], scale: &[f64], damping: f64) -> Vec<f64> {
+        if open.is_empty() {
+            return Vec::new();
+        }
         let (size, rows) = (self.size, self.size + open.len());
         let mut matrix = vec![0.0; rows * open.len()];
         let mut right = vec![0.0; rows];
-        right[..size].copy_from_slice(&self.right);
-        for j in (0..size).filter(|&j| settled[j] && change[j] != 0.0) {
-            for (value, entry) in right.iter_mut().zip(&self.triangle[j * size..(j + 1) * size]) {
-                *value += entry * change[j];
-            }
-        }
+        right[..size].copy_from_slice(pull);
         for (k, &j) in open.iter().enumerate() {
             matrix[k * rows..k * rows + size].copy_from_slice(&self.triangle[j * size..(j + 1) * size]);
             matrix[k * rows + size + k] = damping.sqrt() * scale[j];
