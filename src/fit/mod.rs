@@ -31,3 +31,8 @@ pub use outcome::{
     StopReason, TracePoint,
 };
 pub use residuals::Residuals;
+
+/// temp
+pub fn parse_tie(_: &str, _: &dyn Fn(&str) -> Option<usize>) -> Result<(f64, Vec<(usize, f64)>), FitError> {
+    Err(FitError::NothingFree)
+}

@@ -15,7 +15,6 @@ use super::local::{LocalFit, least_squares};
 use super::minima::{Found, same};
 use super::objective::{Objective, Point};
 use super::outcome::Settings;
-use super::residuals::Residuals;
 use super::starts::spread;
 
 /// Most nodes of one scan.

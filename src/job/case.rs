@@ -11,7 +11,7 @@ use super::peaks::PeaksProblem;
 use super::spectra::{SpectraProblem, SpectraSetup};
 use super::{InputFile, JobError, JobFile, synthetic};
 use crate::bsdf::Model;
-use crate::bsdf::coated_base::{CoatedBase, Design};
+use crate::bsdf::{CoatedBase, Design};
 use crate::fit::{Assignment, Control, Fit, Loss, Prior, Residuals, Role, fit, parse_tie};
 use crate::measure::{
     Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, TableText, ThinFilmLaw, read_table,

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use crate::bsdf::coated_base::Design;
+use crate::bsdf::Design;
 use crate::fit::Settings;
 use crate::measure::{Instrument, Quantity, TableLayout, ThinFilmLawDesign};
 

@@ -2,7 +2,7 @@
 
 use super::JobError;
 use crate::bsdf::Model;
-use crate::bsdf::coated_base::{CoatedBase, Design};
+use crate::bsdf::{CoatedBase, Design};
 use crate::measure::{Geometry, Peak, PeakModel, find_peaks, mirror_cosine};
 use crate::parameter::Parameter;
 

@@ -3,7 +3,7 @@
 use super::file::ModelFile;
 use super::outcome::ModelNote;
 use super::{JobError, JobFile};
-use crate::bsdf::coated_base::CoatedBase;
+use crate::bsdf::CoatedBase;
 use crate::optics::Reference;
 use crate::measure::{Calibration, Instrument, PhaseJumps};
 

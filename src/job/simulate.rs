@@ -4,7 +4,7 @@ use super::case::Comparison;
 use super::predict::Values;
 use super::synthetic::{add_noise, forward};
 use super::{Job, JobError};
-use crate::fit::{Residuals, Role};
+use crate::fit::Role;
 use crate::measure::{GonioTable, Quantity};
 
 /// Noise to add to simulated readings.

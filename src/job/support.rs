@@ -5,7 +5,7 @@ use super::file::{JobFile, ModelFile};
 use super::predict::{Values, predict, solve, values_by_name};
 use super::{JobError, Support};
 use crate::bsdf::Model;
-use crate::bsdf::coated_base::{CoatedBase, Design};
+use crate::bsdf::{CoatedBase, Design};
 use crate::fit::{Control, Fit};
 use crate::measure::{GonioTable, Spectrum};
 
