@@ -1,2 +1,3 @@
+mod colour;
 mod data;
 mod tables;
