@@ -8,7 +8,6 @@ mod scan;
 
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
-use std::num::NonZeroUsize;
 
 use names::Role;
 use scan::{Column, Scan};
@@ -340,7 +339,7 @@ impl<'a> Guesser<'a> {
             sigma: None,
             negative: Negative::Refuse,
             window_nm: None,
-            stride: NonZeroUsize::MIN,
+            stride: 1,
             only: BTreeMap::new(),
             replicates: false,
             wavelength_unit: None,
