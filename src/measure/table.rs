@@ -62,3 +62,12 @@ pub struct PeakTable {
     /// In the order of the file.
     pub readings: Vec<PeakReading>,
 }
+
+/// A checked table of either kind.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Table {
+    /// Readings over wavelength.
+    Spectra(GonioTable),
+    /// Peak wavelengths.
+    Peaks(PeakTable),
+}

@@ -170,6 +170,19 @@ impl<'a> LayeredMedium<'a> {
         }
     }
 
+    /// Σ n d over all layers in the order they follow each other, nm, in each channel.
+    pub fn optical_thickness_nm(&self) -> Vec<f64> {
+        let mut sums = vec![0.0; self.double_wavenumbers.len()];
+        for &layer in &self.arrangement.sequence {
+            let material = &self.permittivities[self.arrangement.layer_materials[layer]];
+            for ((sum, re), im) in sums.iter_mut().zip(&material.re).zip(&material.im) {
+                // n is the real part of √ε.
+                *sum += self.thicknesses_nm[layer] * (0.5 * (re.hypot(*im) + re)).sqrt();
+            }
+        }
+        sums
+    }
+
     /// The inputs of the fast kernel, where this is a single clear film far enough from total reflection.
     fn clear_film(&self, front: f64, cos_theta: f64) -> Option<(FilmChannels<'_>, f64)> {
         let &[layer] = self.arrangement.sequence.as_slice() else { return None };

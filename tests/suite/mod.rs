@@ -1,2 +1,10 @@
+//! Table of contents.
+
 mod coated_base;
+mod coverage;
+mod data;
+mod nist;
 mod optics;
+mod report;
+mod tables;
+mod twins;
