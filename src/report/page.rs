@@ -194,7 +194,6 @@ impl SwatchTable {
 
 /// The verdict on a film.
 struct SupportView<'a> {
-    verdict: &'static str,
     text: &'a str,
     numbers: Vec<(&'static str, String)>,
 }
@@ -216,8 +215,7 @@ impl<'a> SupportView<'a> {
             );
             numbers.push(("AICc with film − without", text));
         }
-        let verdict = if support.supported { "A film is supported." } else { "No film is supported." };
-        Self { verdict, text: &support.text, numbers }
+        Self { text: &support.text, numbers }
     }
 }
 

@@ -35,7 +35,15 @@ pub(crate) fn quantity_label(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Brdf => "BRDF (1/sr)",
         Quantity::BsdfCos => "BRDF × cos θₒ (1/sr)",
-        Quantity::Reflectance => "reflectance (white standard = 1)",
+        Quantity::Reflectance => "reflectance",
+    }
+}
+
+/// What a reader must know of the quantity's scale.
+pub(crate) fn quantity_note(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Reflectance => "Reflectance is relative to a white standard in the same instrument, which has 1.",
+        Quantity::Brdf | Quantity::BsdfCos => "",
     }
 }
 
