@@ -55,7 +55,7 @@ pub(crate) fn drawing(figure: &Figure) -> Drawing {
     let shares_rows = figure.cells.len() <= columns && have_same_bands(&figure.cells);
     let lead = |column: usize| match column {
         0 => LABEL_ROW_HEIGHT + tick_width,
-        _ if shares_rows => 0.0,
+        _ if shares_rows => TICK_SIZE,
         _ => tick_width,
     };
     let leads: f64 = (0..columns).map(lead).sum();

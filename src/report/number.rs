@@ -202,6 +202,20 @@ mod tests {
         assert_eq!(percent(1.0, None), None);
     }
 
+    proptest::proptest! {
+        /// Whatever the sizes, the error keeps two digits (5 % of its smallest leading pair, 1.0) and the value moves by
+        /// at most half a unit of the error's last place, a twentieth of the error.
+        #[test]
+        fn rounding_is_small_beside_the_error(value in -1e5..1e5f64, exponent in -4..4i32, lead in 1.0..9.99f64) {
+            let error = lead * 10f64.powi(exponent);
+            let text = with_error(value, Some(error)).replace('−', "-");
+            let (shown_value, shown_error) = text.split_once(" ± ").unwrap();
+            let (shown_value, shown_error): (f64, f64) = (shown_value.parse().unwrap(), shown_error.parse().unwrap());
+            proptest::prop_assert!((shown_error / error - 1.0).abs() <= 0.0501, "{text} for {value} and {error}");
+            proptest::prop_assert!((shown_value - value).abs() <= 0.0501 * error, "{text} for {value} and {error}");
+        }
+    }
+
     #[test]
     fn counts_are_grouped() {
         assert_eq!(count(5213), "5213");

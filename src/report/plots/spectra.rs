@@ -54,7 +54,7 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
             layers: vec![
                 Layer::Level(0.0),
                 Layer::Series(Series::new(
-                    "residual: model − measured",
+                    "residual",
                     used().map(|r| (r.wavelength_nm, r.residual())),
                     Look::Line { colour: BLUE, width: 1.1, dashed: false },
                 )),
@@ -67,7 +67,8 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         selection.text.unwrap_or_default(),
         angles::meaning(spectra.iter().map(|s| &s.geometry)).to_owned(),
         quantity_note(*quantity).to_owned(),
-        "Each panel has its own scale of readings; all residual strips share one, in the same unit.".to_owned(),
+        "Each panel has its own scale of readings. Residuals are model − measured, in the same unit, all on one scale."
+            .to_owned(),
         if has_masked { "Masked readings beyond a panel's scale are not drawn.".to_owned() } else { String::new() },
     ];
     let caption = sentences.iter().filter(|s| !s.is_empty()).cloned().collect::<Vec<_>>().join(" ");
