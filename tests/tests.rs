@@ -1,3 +1,3 @@
-//! Every integration test, in one binary.
+//! All integration tests in one binary, which links once. The table of contents is `suite/mod.rs`.
 
 mod suite;

@@ -1,7 +1,21 @@
 //! Measurements: the geometry of a reading, tables of readings, the instrument that took them, and colour.
 
+pub mod colour;
+mod error;
 mod geometry;
+mod guess;
+mod layout;
+mod read;
 mod table;
+mod text;
 
+pub use error::{Place, TableError, TableProblem};
 pub use geometry::Geometry;
-pub use table::{GonioTable, PeakReading, PeakTable, Quantity, Spectrum};
+pub use guess::{Certainty, Guess, GuessNote, guess_layout};
+pub use layout::{
+    AngleUnit, Angles, Cell, Delimiter, FourAngles, LongColumns, Negative, PeaksLayout, PerColumn, SigmaLayout, Source,
+    SpectraColumns, SpectraLayout, TableLayout, TextFormat, WavelengthUnit, WideAngles, WideColumns,
+};
+pub use read::read_table;
+pub use table::{GonioTable, PeakReading, PeakTable, Quantity, Spectrum, Table};
+pub use text::TableText;

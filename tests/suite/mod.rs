@@ -1,1 +1,4 @@
+mod colour;
+mod data;
 mod report;
+mod tables;
