@@ -1,3 +1,3 @@
-//! All integration tests in one binary, which links once. The table of contents is `suite/mod.rs`.
+//! All integration tests in one binary.
 
 mod suite;

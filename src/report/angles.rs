@@ -40,7 +40,7 @@ pub(crate) fn meaning<'a>(mut geometries: impl Iterator<Item = &'a Geometry>) ->
 }
 
 fn angle(degrees: f64) -> String {
-    super::number::minus(&format!("{:.1}", degrees).trim_end_matches('0').trim_end_matches('.').replace("-0", "0"))
+    crate::number::minus(&format!("{:.1}", degrees).trim_end_matches('0').trim_end_matches('.').replace("-0", "0"))
 }
 
 /// Spectra chosen for display, as indices in the order of their angles, and how they were chosen.

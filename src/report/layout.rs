@@ -288,7 +288,7 @@ fn lay_map(map: &Map, chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
                 match (colour, row[column]) {
                     (Some(colour), Some(value)) if map.with_numbers => {
                         let ink = if is_light(colour) { BLACK } else { WHITE };
-                        let number = super::number::to_place(value, -2);
+                        let number = crate::number::to_place(value, -2);
                         let at = ((left + right) / 2.0, (top + bottom) / 2.0);
                         shapes.push(text(number, at, TICK_SIZE, Align::Middle).coloured(ink));
                     }

@@ -16,7 +16,6 @@ mod curves;
 mod files;
 mod layout;
 mod methods;
-mod number;
 mod page;
 mod palette;
 mod plot;

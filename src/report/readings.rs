@@ -71,5 +71,5 @@ pub(crate) fn rms(case: &Case) -> Option<String> {
         return None;
     }
     let mean = residuals.iter().map(|r| r * r).sum::<f64>() / super::chart::length(residuals.len());
-    Some(format!("{}{unit}", super::number::significant(mean.sqrt(), 3)))
+    Some(format!("{}{unit}", crate::number::significant(mean.sqrt(), 3)))
 }

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::number::{beside_error, count, percent, plain, significant, with_error};
 use super::readings;
 use crate::fit::{Bound, Estimate, Fit, Goodness, Minimum, SigmaSource, StopReason};
 use crate::job::{Case, ThicknessOrder, Truth};
+use crate::number::{beside_error, count, percent, plain, significant, with_error};
 
 /// Correlations of at least this size are listed.
 pub(crate) const STRONG_CORRELATION: f64 = 0.9;
@@ -215,7 +215,7 @@ pub(crate) fn strong_correlations(fit: &Fit) -> Vec<String> {
             if let Some(r) = fit.correlations.get(i).and_then(|row| row.get(j)).copied().flatten()
                 && r.abs() >= STRONG_CORRELATION
             {
-                pairs.push((r, format!("{one} and {other}: {}", super::number::to_place(r, -3))));
+                pairs.push((r, format!("{one} and {other}: {}", crate::number::to_place(r, -3))));
             }
         }
     }
@@ -238,7 +238,7 @@ pub(crate) fn goodness(case: &Case) -> Vec<(&'static str, String)> {
     rows.push(("Readings", count(u64::try_from(g.readings).unwrap_or(u64::MAX))));
     rows.push(("Effective readings", effective));
     rows.push(("Free parameters", g.free_parameters.to_string()));
-    rows.push(("Degrees of freedom", super::number::minus(&g.degrees_of_freedom.to_string())));
+    rows.push(("Degrees of freedom", crate::number::minus(&g.degrees_of_freedom.to_string())));
     rows.push(("χ²", significant(g.chi_squared, 4)));
     rows.push((
         "Reduced χ²",
@@ -298,7 +298,7 @@ pub(crate) fn share(weight: f64) -> String {
     if weight > 0.0 && weight < 0.001 {
         "< 0.1 %".to_owned()
     } else {
-        format!("{} %", super::number::to_place(100.0 * weight, -1))
+        format!("{} %", crate::number::to_place(100.0 * weight, -1))
     }
 }
 
@@ -311,6 +311,6 @@ pub(crate) fn with_unit(number: &str, unit: &str) -> String {
 }
 
 fn signed(value: f64) -> String {
-    let text = super::number::to_place(value, -1);
+    let text = crate::number::to_place(value, -1);
     if value > 0.0 { format!("+{text}") } else { text }
 }

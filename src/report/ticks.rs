@@ -1,6 +1,6 @@
 //! Where an axis has its ticks, and what stands beside them.
 
-use super::number::{minus, superscript};
+use crate::number::{minus, superscript};
 
 /// A tick's place and label.
 #[derive(Debug, Clone, PartialEq)]

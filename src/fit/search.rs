@@ -1,0 +1,171 @@
+//! From starts to distinct minima.
+//!
+//! Starts are cheap and minima are few. Every start is run on the coarse problem, where there is one; what ends together is
+//! one candidate; each candidate is then run on the full problem, and only those that can matter are settled to the last
+//! digit. Where a parameter asks for a scan, the cost is first profiled along it, the others following in a few steps, and
+//! every valley of that profile is one more start: linear parameters (a gain) are solved at each node, so that their
+//! start values cannot hide a valley.
+
+use rayon::prelude::*;
+
+use super::curvature::Curvature;
+use super::differences::{Accuracy, Bounds, Differences, Pattern};
+use super::least_squares::Finish;
+use super::local::{LocalFit, least_squares};
+use super::minima::{Found, same};
+use super::objective::{Objective, Point};
+use super::outcome::Settings;
+use super::starts::spread;
+
+/// Most nodes of one scan.
+const MOST_NODES: usize = 2000;
+/// Nodes of one scan that hand their values on from one to the next; the same for any number of threads.
+const CHUNK: usize = 8;
+
+/// What the search found.
+#[derive(Debug)]
+pub(super) struct Survey {
+    /// Distinct minima on the full problem, lowest cost first.
+    pub(super) minima: Vec<Found>,
+    /// Scanned parameters (position among the free ones) with the lowest cost at each node.
+    pub(super) profiles: Vec<(usize, Vec<Point>)>,
+    /// Number of starts tried.
+    pub(super) starts: usize,
+}
+
+/// Bounds of a run of all free parameters.
+pub(super) fn all_bounds(objective: &Objective<'_>) -> Bounds {
+    let free = &objective.mapping.free;
+    Bounds { lower: free.iter().map(|p| p.lower).collect(), upper: free.iter().map(|p| p.upper).collect() }
+}
+
+/// Finds the distinct minima.
+pub(super) fn search(objective: &Objective<'_>, pattern: &Pattern, settings: &Settings) -> Survey {
+    let bounds = all_bounds(objective);
+    let coarse = if settings.starts > 1 { objective.residuals.coarse() } else { None };
+    let screen = coarse.map(|residuals| objective.on(residuals));
+    let screen_pattern = screen.as_ref().map(|screen| Pattern::new(screen, false));
+    let (screening, screening_pattern) = match (&screen, &screen_pattern) {
+        (Some(screen), Some(pattern)) => (screen, pattern),
+        _ => (objective, pattern),
+    };
+
+    let mut starts = spread(objective.mapping, settings.starts, settings.seed);
+    let mut profiles = Vec::new();
+    if settings.starts > 1 {
+        for (position, points) in profiles_of(screening, screening_pattern, &bounds) {
+            starts.extend(valleys(&points));
+            profiles.push((position, scaled(points, objective, screening)));
+        }
+    }
+
+    let total = starts.len();
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let run = |start: &Vec<f64>| {
+        let differences = Differences::new(screening_pattern);
+        let end =
+            least_squares(screening, differences, &bounds, start, Finish::Travelled(1e-3), settings.max_iterations);
+        (objective.control.progress)(1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed), total);
+        end
+    };
+    let ends: Vec<LocalFit> = starts.par_iter().map(run).collect::<Vec<_>>().into_iter().flatten().collect();
+    let candidates = distinct(screening, screening_pattern, &bounds, ends.into_iter().map(|end| (end, 1)).collect());
+
+    let finish = |candidate: &Found| {
+        let differences = Differences::new(pattern);
+        let finish = Finish::Travelled(1e-6);
+        let mut end = least_squares(objective, differences, &bounds, &candidate.free, finish, settings.max_iterations)?;
+        let mut path = candidate.path.clone();
+        path.append(&mut end.path);
+        Some((LocalFit { path, ..end }, candidate.hits))
+    };
+    let ends: Vec<(LocalFit, usize)> =
+        candidates.par_iter().map(finish).collect::<Vec<_>>().into_iter().flatten().collect();
+    let minima = distinct(objective, pattern, &bounds, ends);
+    Survey { minima, profiles, starts: total }
+}
+
+/// σ of the readings, as far as the cost tells it.
+pub(super) fn sigma(objective: &Objective<'_>, cost: f64) -> f64 {
+    if objective.residuals.sigma_known() {
+        return 1.0;
+    }
+    #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
+    let freedom = objective.rows().saturating_sub(objective.mapping.free.len()).max(1) as f64;
+    (cost / freedom).sqrt()
+}
+
+/// Merges ends that are one minimum, lowest cost first.
+fn distinct(
+    objective: &Objective<'_>,
+    pattern: &Pattern,
+    bounds: &Bounds,
+    mut ends: Vec<(LocalFit, usize)>,
+) -> Vec<Found> {
+    ends.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
+    let mut minima: Vec<Found> = Vec::new();
+    for (end, hits) in ends {
+        let twin =
+            |found: &&mut Found| same(&found.free, found.curvature.as_ref(), sigma(objective, found.cost), &end.free);
+        if let Some(found) = minima.iter_mut().find(twin) {
+            found.hits += hits;
+            continue;
+        }
+        let mut differences = Differences::new(pattern);
+        let curvature = Curvature::new(objective, &mut differences, bounds, &end.free, Accuracy::Travel);
+        let LocalFit { free, cost, stop, path } = end;
+        minima.push(Found { free, cost, stop, hits, path, curvature });
+    }
+    minima
+}
+
+/// The profile along each scanned parameter.
+fn profiles_of(objective: &Objective<'_>, pattern: &Pattern, bounds: &Bounds) -> Vec<(usize, Vec<Point>)> {
+    let free = &objective.mapping.free;
+    let scanned = (0..free.len()).filter_map(|position| Some((position, free[position].scan_step?)));
+    scanned.map(|(position, step)| (position, profile(objective, pattern, bounds, position, step))).collect()
+}
+
+/// The lowest cost at nodes `step` apart along one parameter.
+fn profile(objective: &Objective<'_>, pattern: &Pattern, bounds: &Bounds, position: usize, step: f64) -> Vec<Point> {
+    let (lower, upper) = super::starts::range(&objective.mapping.free[position]);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a small positive count")]
+    let nodes = (((upper - lower) / step).ceil().clamp(2.0, MOST_NODES as f64)) as usize + 1;
+    #[expect(clippy::cast_precision_loss, reason = "a number of nodes is small")]
+    let node = |k: usize| lower + (upper - lower) * (k as f64 / (nodes - 1) as f64);
+    let chunks: Vec<usize> = (0..nodes).step_by(CHUNK).collect();
+    let run = |&first: &usize| {
+        let mut start = objective.mapping.start();
+        let mut points = Vec::with_capacity(CHUNK);
+        for k in first..(first + CHUNK).min(nodes) {
+            start[position] = node(k);
+            let mut held = bounds.clone();
+            (held.lower[position], held.upper[position]) = (node(k), node(k));
+            let (finish, iterations) = (Finish::Travelled(1e-2), if k == first { 20 } else { 6 });
+            let end = least_squares(objective, Differences::new(pattern), &held, &start, finish, iterations);
+            if let Some(end) = end {
+                start.clone_from(&end.free);
+                points.push(Point { free: end.free, cost: end.cost });
+            }
+        }
+        points
+    };
+    chunks.par_iter().map(run).collect::<Vec<_>>().into_iter().flatten().collect()
+}
+
+/// Nodes of a profile that are lower than their neighbours.
+fn valleys(points: &[Point]) -> Vec<Vec<f64>> {
+    let cost = |k: Option<usize>| k.and_then(|k| points.get(k)).map_or(f64::INFINITY, |point| point.cost);
+    let low = |&k: &usize| cost(Some(k)) <= cost(k.checked_sub(1)) && cost(Some(k)) < cost(Some(k + 1));
+    (0..points.len()).filter(low).map(|k| points[k].free.clone()).collect()
+}
+
+/// Costs of the coarse problem as they would be of the full one.
+fn scaled(mut points: Vec<Point>, full: &Objective<'_>, coarse: &Objective<'_>) -> Vec<Point> {
+    #[expect(clippy::cast_precision_loss, reason = "a number of readings is far below 2^53")]
+    let factor = full.readings as f64 / coarse.readings.max(1) as f64;
+    for point in &mut points {
+        point.cost *= factor;
+    }
+    points
+}
