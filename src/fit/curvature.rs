@@ -1,6 +1,6 @@
 //! What the Jacobian at a minimum says of it: covariance, open directions, volume.
 
-use nalgebra::{DMatrix, SVD};
+use nalgebra::{Cholesky, DMatrix, SVD};
 
 use super::differences::{Accuracy, Bounds, Differences};
 use super::objective::Objective;
@@ -25,6 +25,7 @@ pub(super) struct Curvature {
     pub(super) jacobian: Vec<f64>,
     /// Jacobian's triangle after the loss, all columns.
     pub(super) triangle: DMatrix<f64>,
+    model: LinearModel,
 }
 
 /// Inverse of a Gram matrix, for σ = 1, with the directions in which there is none.
@@ -88,12 +89,56 @@ impl Curvature {
         let at_bound = (0..size).map(|j| on_bound(bounds, free, j)).collect::<Vec<_>>();
         let inner = (0..size).filter(|&j| at_bound[j].is_none()).collect();
         let triangle = DMatrix::from_column_slice(size, size, model.triangle());
-        Some(Self { at_bound, gradient: model.gradient(), inner, rows, jacobian, triangle })
+        Some(Self { at_bound, gradient: model.gradient(), inner, rows, jacobian, triangle, model })
+    }
+
+    /// The fall of the cost that a full step inside the bounds promises, as a share of the cost per row.
+    pub(super) fn promise(&self, bounds: &Bounds, free: &[f64], cost: f64) -> f64 {
+        let held: Vec<bool> = (0..free.len()).map(|j| bounds.keeps(j, free[j], self.gradient[j])).collect();
+        let step = self.model.step(free, bounds, &held, &vec![1.0; free.len()], 0.0);
+        #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
+        let rows = self.rows.len() as f64;
+        if cost > 0.0 { step.predicted / cost * rows } else { 0.0 }
     }
 
     /// The triangle's columns of these parameters.
     pub(super) fn columns(&self, positions: &[usize]) -> DMatrix<f64> {
         self.triangle.select_columns(positions)
+    }
+
+    /// Covariance with a robust loss, the sandwich A⁻¹BA⁻¹·N/(N−p) with A = Σψ′·jjᵀ and B = Σψ²·jjᵀ (Huber 1967), which
+    /// asks of the readings only that they be independent, not that they have one σ. A prior's row has A = B/σ² = jjᵀ.
+    /// None where A is not positive definite.
+    pub(super) fn sandwich(&self, objective: &Objective<'_>, positions: &[usize]) -> Option<DMatrix<f64>> {
+        let (size, count) = (positions.len(), self.rows.len());
+        let lengths: Vec<f64> = positions.iter().map(|&j| self.triangle.column(j).norm()).collect();
+        let mut a = DMatrix::<f64>::zeros(size, size);
+        let mut b = a.clone();
+        for (row, &value) in self.rows.iter().enumerate() {
+            let (slope, square) = if row < objective.readings {
+                (objective.loss.psi_slope(value), objective.loss.psi(value).powi(2))
+            } else {
+                (1.0, objective.sigma * objective.sigma)
+            };
+            let entry = |k: usize| self.jacobian[positions[k] * count + row] / lengths[k];
+            for i in 0..size {
+                for j in 0..size {
+                    let product = entry(i) * entry(j);
+                    a[(i, j)] += slope * product;
+                    b[(i, j)] += square * product;
+                }
+            }
+        }
+        let a = Cholesky::new(a)?.inverse();
+        #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
+        let small_sample = count as f64 / count.saturating_sub(size).max(1) as f64;
+        let mut covariance = &a * b * &a * small_sample;
+        for i in 0..size {
+            for j in 0..size {
+                covariance[(i, j)] /= lengths[i] * lengths[j];
+            }
+        }
+        Some(covariance)
     }
 
     /// (JᵀJ)⁻¹ over these parameters.

@@ -25,6 +25,11 @@ impl Bounds {
     pub(super) fn holds(&self, j: usize) -> bool {
         self.lower[j] >= self.upper[j]
     }
+
+    /// Whether parameter `j` stays at `value`: held, or on a bound and pushed outwards by the cost's gradient.
+    pub(super) fn keeps(&self, j: usize, value: f64, gradient: f64) -> bool {
+        self.holds(j) || (value <= self.lower[j] && gradient >= 0.0) || (value >= self.upper[j] && gradient <= 0.0)
+    }
 }
 
 /// How exact a Jacobian is wanted.

@@ -1,7 +1,10 @@
 //! The fit, from assignments to result.
 
+use std::time::{Duration, Instant};
+
 use super::assignment::Assignment;
 use super::control::Control;
+use super::curvature::Curvature;
 use super::differences::{Accuracy, Differences, Pattern};
 use super::error::FitError;
 use super::least_squares::Finish;
@@ -9,11 +12,15 @@ use super::local::least_squares;
 use super::mapping::Mapping;
 use super::minima::Found;
 use super::objective::{Counters, Objective};
-use super::outcome::{Fit, Settings};
+use super::outcome::{Fit, Settings, Solver};
 use super::residuals::Residuals;
-use super::search::{Survey, all_bounds, search, sigma};
+use super::search::{Survey, all_bounds, matters, search, sigma};
 use super::summary::summarise;
-use crate::fit::curvature::Curvature;
+
+/// Most repetitions of the search for the sake of σ.
+const ROUNDS: usize = 4;
+/// Most rounds of settling σ with the best minimum; each brings it two digits or so nearer.
+const SIGMA_ROUNDS: usize = 20;
 
 /// Fits the free parameters to the readings.
 ///
@@ -34,42 +41,72 @@ pub fn fit(
     let parameters = residuals.parameters();
     let mapping = Mapping::new(parameters, assignments)?;
     let counters = Counters::default();
-    let objective = Objective::new(residuals, &mapping, assignments, settings, control, &counters);
+    let mut objective = Objective::new(residuals, &mapping, assignments, settings, control, &counters);
     enough_readings(&objective)?;
-    let pattern = Pattern::new(&objective, false);
+    let pattern = Pattern::new(&objective, expensive(&objective));
     let mut survey = search(&objective, &pattern, settings);
+    // A prior is weighed against σ. Where that is unknown it comes from the fit itself, and the search is repeated until
+    // both agree; what is left is settled with the best minimum.
+    for _ in 0..ROUNDS {
+        let Some(best) = survey.minima.first().filter(|_| objective.weighs_priors()) else { break };
+        let (before, now) = (objective.sigma, sigma(&objective, best.cost));
+        objective.sigma = now;
+        if (now / before).ln().abs() < 0.05 || control.interrupted() {
+            break;
+        }
+        survey = search(&objective, &pattern, settings);
+    }
     if survey.minima.is_empty() {
         return Err(no_finite_start(&objective, survey.starts));
     }
-    settle(&objective, &pattern, settings, &mut survey);
+    settle(&mut objective, &pattern, settings, &mut survey);
     Ok(summarise(&objective, assignments, settings, survey))
 }
 
 /// Brings the minima that can matter to the last digit, and differentiates them anew.
-fn settle(objective: &Objective<'_>, pattern: &Pattern, settings: &Settings, survey: &mut Survey) {
-    let bounds = all_bounds(objective);
-    let lowest = survey.minima[0].cost;
+fn settle(objective: &mut Objective<'_>, pattern: &Pattern, settings: &Settings, survey: &mut Survey) {
     let mut differences = Differences::new(pattern);
-    for found in &mut survey.minima {
-        if !matters(objective, lowest, found) {
+    settle_one(objective, &mut differences, settings, &mut survey.minima[0]);
+    for _ in 0..SIGMA_ROUNDS {
+        let now = sigma(objective, survey.minima[0].cost);
+        if !objective.weighs_priors() || (now - objective.sigma).abs() <= 1e-12 * now {
             break;
         }
+        objective.sigma = now;
+        settle_one(objective, &mut differences, settings, &mut survey.minima[0]);
+    }
+    let lowest = survey.minima[0].cost;
+    for found in survey.minima.iter_mut().skip(1) {
+        if matters(objective, lowest, found) {
+            settle_one(objective, &mut differences, settings, found);
+        }
+    }
+    survey.minima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+}
+
+/// One minimum, by least squares where that is the solver asked for; the steps found are kept for the next one.
+fn settle_one(objective: &Objective<'_>, differences: &mut Differences<'_>, settings: &Settings, found: &mut Found) {
+    let bounds = all_bounds(objective);
+    if matches!(settings.solver, Solver::LeastSquares | Solver::ParticleSwarm) {
         let start = differences.clone();
         let end = least_squares(objective, start, &bounds, &found.free, Finish::Settled, settings.max_iterations);
         if let Some(end) = end {
             found.path.extend(end.path);
             (found.free, found.cost, found.stop) = (end.free, end.cost, end.stop);
         }
-        let curvature = Curvature::new(objective, &mut differences, &bounds, &found.free, Accuracy::Settled);
-        found.curvature = curvature.or(found.curvature.take());
     }
-    survey.minima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let curvature = Curvature::new(objective, differences, &bounds, &found.free, Accuracy::Settled);
+    found.curvature = curvature.or(found.curvature.take());
 }
 
-/// Whether a minimum can have any weight beside the lowest: exp(−40) is none.
-fn matters(objective: &Objective<'_>, lowest: f64, found: &Found) -> bool {
-    let sigma = sigma(objective, lowest);
-    found.cost - lowest <= 80.0 * sigma * sigma
+/// Whether one evaluation costs much more than the 20 µs or so that handing it to another thread takes. It decides where
+/// work is done, never what comes out.
+fn expensive(objective: &Objective<'_>) -> bool {
+    let mut values = vec![0.0; objective.residuals.parameters().len()];
+    let mut rows = vec![0.0; objective.rows()];
+    let begin = Instant::now();
+    objective.evaluate(&objective.mapping.start(), &mut values, &mut rows);
+    begin.elapsed() > Duration::from_millis(1)
 }
 
 fn check_settings(settings: &Settings) -> Result<(), FitError> {

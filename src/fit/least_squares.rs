@@ -70,11 +70,17 @@ const SETTLING: f64 = 1e-5;
 
 /// A change of a parameter by its own size is damped at least as much as this share of the rows' length.
 const RELATIVE_CHANGE: f64 = 0.3;
+/// A step that promises more than this share of the cost goes far enough to be probed for its bend.
+const FAR: f64 = 0.0;
 /// Share of a step at which the rows are probed for their bend.
 const PROBE: f64 = 0.1;
 /// A step whose bend is longer than this share of it leaves the region in which the linear model is any guide
 /// (Transtrum & Sethna 2012, section 4: 0.75 for twice the ratio).
 const MOST_BEND: f64 = 0.375;
+
+/// A step is stretched at most by this much, and not at all by less than that.
+const MOST_STRETCH: f64 = 8.0;
+const LEAST_STRETCH: f64 = 1.3;
 
 /// The solver with its buffers.
 #[derive(Debug)]
@@ -147,21 +153,11 @@ impl<'a> LeastSquares<'a> {
         LinearModel::new(&mut self.jacobian, &mut self.right)
     }
 
-    /// Parameters that stay: held ones, and those on a bound that the gradient pushes outwards.
-    fn held(&self, free: &[f64], gradient: &[f64]) -> Vec<bool> {
-        let held = |j: usize| {
-            self.bounds.holds(j)
-                || (free[j] <= self.bounds.lower[j] && gradient[j] >= 0.0)
-                || (free[j] >= self.bounds.upper[j] && gradient[j] <= 0.0)
-        };
-        (0..free.len()).map(held).collect()
-    }
-
     /// Makes the damping see at least relative changes: where a column vanishes (an exponential that has died out), its
     /// length alone would let its parameter run away to where nothing brings it back.
     fn limit_relative_change(&mut self, objective: &Objective<'_>, free: &[f64], cost: f64) {
         for ((scale, x), parameter) in self.scale.iter_mut().zip(free).zip(&objective.mapping.free) {
-            *scale = scale.max(RELATIVE_CHANGE * cost.sqrt() / x.abs().max(1e-3 * parameter.scale));
+            *scale = scale.max(RELATIVE_CHANGE * cost.sqrt() / x.abs().max(parameter.scale));
         }
     }
 
@@ -173,7 +169,8 @@ impl<'a> LeastSquares<'a> {
             *scale = if length > 0.0 { length } else { 1.0 };
         }
         self.limit_relative_change(objective, free, *cost);
-        let held = self.held(free, &model.gradient());
+        let gradient = model.gradient();
+        let held: Vec<bool> = (0..free.len()).map(|j| self.bounds.keeps(j, free[j], gradient[j])).collect();
         let full = model.step(free, &self.bounds, &held, &self.scale, 0.0);
         #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
         let promise = full.predicted / *cost * self.rows.len() as f64;
@@ -240,7 +237,7 @@ impl<'a> LeastSquares<'a> {
                 return;
             }
             let mut step = model.step(free, &self.bounds, held, &self.scale, self.damping);
-            if !self.bend(objective, free, model, &mut step) {
+            if step.predicted > FAR * *cost && !self.bend(objective, free, model, &mut step) {
                 if !self.shorten() {
                     return self.exhausted();
                 }
@@ -252,16 +249,45 @@ impl<'a> LeastSquares<'a> {
             let ratio = (*cost - there) / step.predicted;
             if there < *cost && ratio > 1e-4 {
                 std::mem::swap(&mut self.rows, &mut self.trial);
-                *free = aim;
-                *cost = there;
+                let (foot, before) = (std::mem::replace(free, aim), std::mem::replace(cost, there));
                 self.helpful = self.damping;
                 self.damping *= (1.0 - (2.0 * ratio.min(1.0) - 1.0).powi(3)).max(1.0 / 3.0);
                 self.damping = self.damping.max(1e-20);
                 self.growth = 2.0;
-                return;
+                return self.stretch(objective, free, cost, &foot, before, &step.change, model.slope(&step.change));
             }
             if !self.shorten() {
                 return self.exhausted();
+            }
+        }
+    }
+
+    /// Goes further along a step that helped more than the linear model said, to where a parabola through both costs and
+    /// the slope has its minimum. Far from zero residuals Gauss–Newton steps are too short by a constant factor, and
+    /// would creep.
+    fn stretch(
+        &mut self,
+        objective: &Objective<'_>,
+        free: &mut Vec<f64>,
+        cost: &mut f64,
+        foot: &[f64],
+        before: f64,
+        change: &[f64],
+        slope: f64,
+    ) {
+        let bend = *cost - before - slope;
+        let factor = if bend > 0.0 { (-0.5 * slope / bend).min(MOST_STRETCH) } else { MOST_STRETCH };
+        if factor < LEAST_STRETCH {
+            return;
+        }
+        let aim: Vec<f64> = (0..free.len())
+            .map(|j| (foot[j] + factor * change[j]).clamp(self.bounds.lower[j], self.bounds.upper[j]))
+            .collect();
+        if aim != *free && objective.evaluate(&aim, &mut self.values, &mut self.trial) {
+            let there = objective.cost(&self.trial);
+            if there < *cost {
+                std::mem::swap(&mut self.rows, &mut self.trial);
+                (*free, *cost) = (aim, there);
             }
         }
     }

@@ -6,6 +6,7 @@ mod curvature;
 mod differences;
 mod engine;
 mod error;
+mod expression;
 mod least_squares;
 mod linear;
 mod local;
@@ -16,6 +17,7 @@ mod objective;
 mod outcome;
 mod residuals;
 mod search;
+mod smooth;
 mod starts;
 mod statistics;
 mod step;
@@ -26,13 +28,9 @@ pub use assignment::{Assignment, Prior, Role};
 pub use control::Control;
 pub use engine::fit;
 pub use error::FitError;
+pub use expression::{ExpressionError, parse_tie};
 pub use outcome::{
     Bound, Estimate, Fit, Goodness, Loss, Minimum, OpenDirection, ProfilePoint, Settings, SigmaSource, Solver,
     StopReason, TracePoint,
 };
 pub use residuals::Residuals;
-
-/// temp
-pub fn parse_tie(_: &str, _: &dyn Fn(&str) -> Option<usize>) -> Result<(f64, Vec<(usize, f64)>), FitError> {
-    Err(FitError::NothingFree)
-}

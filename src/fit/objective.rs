@@ -7,13 +7,13 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::assignment::Assignment;
 use super::control::Control;
 use super::linear::dot;
 use super::loss::RobustLoss;
 use super::mapping::Mapping;
 use super::outcome::Settings;
 use super::residuals::Residuals;
-use super::{Assignment, FitError};
 
 /// A prior on one parameter, as a linear form of the free ones: (constant + Σ factor·free)/σ.
 #[derive(Debug, Clone)]
@@ -84,6 +84,11 @@ impl<'a> Objective<'a> {
         }
     }
 
+    /// Whether there are priors to be weighed against a σ that only the fit can tell.
+    pub(super) fn weighs_priors(&self) -> bool {
+        !self.priors.is_empty() && !self.residuals.sigma_known()
+    }
+
     /// Number of rows: readings, then priors.
     pub(super) fn rows(&self) -> usize {
         self.readings + self.priors.len()
@@ -125,14 +130,18 @@ impl<'a> Objective<'a> {
         }
     }
 
+    /// Half the derivative of each row's cost: the row itself for squares and priors.
+    pub(super) fn psi(&self, rows: &[f64]) -> Vec<f64> {
+        let mut psi = rows.to_vec();
+        psi[..self.readings].iter_mut().for_each(|row| *row = self.loss.psi(*row));
+        psi
+    }
+
     /// Evaluations so far, and how many were not finite.
     pub(super) fn counts(&self) -> (u64, u64) {
         (self.counters.evaluations.load(Ordering::Relaxed), self.counters.not_finite.load(Ordering::Relaxed))
     }
 }
-
-/// An error of this module never reaches a user.
-pub(super) type Checked<T> = Result<T, FitError>;
 
 /// The best point that a solver has seen, kept outside of it.
 #[derive(Debug, Default)]

@@ -139,6 +139,11 @@ impl LinearModel {
         (bent / straight).sqrt()
     }
 
+    /// Slope of the cost along a step.
+    pub(super) fn slope(&self, change: &[f64]) -> f64 {
+        2.0 * dot(&self.image(change), &self.right)
+    }
+
     /// R·change.
     fn image(&self, change: &[f64]) -> Vec<f64> {
         let mut moved = vec![0.0; self.size];

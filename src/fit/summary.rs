@@ -28,8 +28,7 @@ pub(super) fn summarise(
     let (covariance, correlations) = errors[0].as_ref().map_or_else(|| no_covariance(names.len()), Errors::matrices);
     let open_directions =
         best.curvature.as_ref().map_or_else(Vec::new, |c| open_directions(objective, best, c, &names));
-    let estimates =
-        estimates(objective, assignments, best, errors[0].as_ref(), &minima[0], &goodness, &open_directions);
+    let estimates = estimates(objective, assignments, best, &minima[0], &goodness, &open_directions);
     let profiles = profiles
         .into_iter()
         .map(|(position, points)| {
@@ -108,13 +107,18 @@ impl Errors {
         let curvature = found.curvature.as_ref()?;
         let sigma = sigma(objective, found.cost)?;
         let inverse = curvature.inverse(&curvature.inner);
+        let matrix = if objective.loss.is_squares() {
+            sigma * sigma * &inverse.covariance
+        } else {
+            curvature.sandwich(objective, &curvature.inner)?
+        };
         let size = found.free.len();
         let mut covariance = vec![vec![None; size]; size];
         let known: Vec<bool> = (0..curvature.inner.len()).map(|k| determined(&inverse, k)).collect();
         for (a, &i) in curvature.inner.iter().enumerate() {
             for (b, &j) in curvature.inner.iter().enumerate() {
                 if known[a] && known[b] {
-                    covariance[i][j] = finite(sigma * sigma * inverse.covariance[(a, b)]);
+                    covariance[i][j] = finite(matrix[(a, b)]);
                 }
             }
         }
@@ -221,7 +225,6 @@ fn estimates(
     objective: &Objective<'_>,
     assignments: &[Assignment],
     best: &Found,
-    errors: Option<&Errors>,
     minimum: &Minimum,
     goodness: &Goodness,
     open: &[OpenDirection],
@@ -229,7 +232,6 @@ fn estimates(
     #[expect(clippy::cast_precision_loss, reason = "degrees of freedom are far below 2^53")]
     let freedom = (goodness.sigma_source == SigmaSource::Estimated).then(|| goodness.degrees_of_freedom.max(1) as f64);
     let quantile = central_95(freedom);
-    let _ = errors;
     let parameters = objective.residuals.parameters();
     let estimate = |index: usize| {
         let (parameter, assignment) = (&parameters[index], &assignments[index]);

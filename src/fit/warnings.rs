@@ -1,6 +1,6 @@
 //! What a reader must know before using the numbers, each a sentence: what was seen, and what to do.
 
-use super::outcome::{Bound, Fit, StopReason};
+use super::outcome::{Bound, Fit, Loss, SigmaSource, StopReason};
 
 /// A rival with more than this share of the best one's weight is spoken of.
 const RIVAL: f64 = 0.05;
@@ -12,6 +12,7 @@ pub(super) fn warnings(fit: &Fit) -> Vec<String> {
     sentences.extend(rivals(fit));
     sentences.extend(fit.open_directions.iter().map(|direction| direction.text.clone()));
     sentences.extend(bounds(fit));
+    sentences.extend(errors(fit));
     sentences.extend(not_finite(fit));
     sentences
 }
@@ -59,6 +60,17 @@ fn bounds(fit: &Fit) -> Vec<String> {
             ))
         })
         .collect()
+}
+
+fn errors(fit: &Fit) -> Option<String> {
+    if fit.goodness.sigma_source == SigmaSource::Estimated && fit.goodness.degrees_of_freedom <= 0 {
+        return Some(
+            "As many parameters as readings: nothing is left to estimate σ from, so there are no standard errors."
+                .to_owned(),
+        );
+    }
+    (fit.settings.loss != Loss::Squares)
+        .then(|| "Standard errors under the robust loss are those of the sandwich estimator.".to_owned())
 }
 
 fn not_finite(fit: &Fit) -> Option<String> {

@@ -305,9 +305,9 @@ pub(super) fn assign(
                     Ok(Assignment { role: Role::Fixed(*value), prior: None })
                 }
                 Some(ParameterFile::Tied(expression)) => {
-                    let (constant, terms) =
-                        parse_tie(expression, &index_of).map_err(|error| JobError::key(key(), error.to_string()))?;
-                    Ok(Assignment { role: Role::Tied { constant, terms }, prior: None })
+                    let role = parse_tie(expression, index_of);
+                    let role = role.map_err(|error| JobError::key(key(), error.to_string()))?;
+                    Ok(Assignment { role, prior: None })
                 }
                 Some(ParameterFile::Free(free)) => {
                     free_assignment(parameter, free, gains).map_err(|problem| JobError::key(key(), problem))

@@ -4,6 +4,7 @@ mod coated_base;
 mod colour;
 mod coverage;
 mod data;
+mod engine;
 mod nist;
 mod optics;
 mod report;
