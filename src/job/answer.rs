@@ -43,10 +43,8 @@ pub(super) fn case_answer(case: &Case) -> String {
     sentences.push(main_values(fit));
     if case.orders.len() > 1 {
         let orders: Vec<String> = case.orders.iter().map(|order| format!("{:.0}", order.thickness_nm)).collect();
-        sentences.push(format!(
-            "Peaks alone do not give the order of interference: d may be any of {} nm.",
-            list(&orders)
-        ));
+        sentences
+            .push(format!("Peaks alone do not give the order of interference: d may be any of {} nm.", list(&orders)));
     } else {
         sentences.extend(rivals(fit));
     }
@@ -106,7 +104,10 @@ fn rivals(fit: &Fit) -> Option<String> {
     if others.is_empty() {
         let count = fit.minima.len() - 1;
         return (count > 0).then(|| {
-            format!("{count} other minima were found, none with more than {} of the best one's weight.", percent(RIVAL_SHARE))
+            format!(
+                "{count} other minima were found, none with more than {} of the best one's weight.",
+                percent(RIVAL_SHARE)
+            )
         });
     }
     let scanned = fit.profiles.first().and_then(|(name, _)| fit.estimates.iter().position(|e| e.name == *name));
@@ -123,7 +124,10 @@ fn rivals(fit: &Fit) -> Option<String> {
             }
         })
         .collect();
-    Some(format!("Rivals that the data do not rule out, with their share of the best one's weight: {}.", texts.join(", ")))
+    Some(format!(
+        "Rivals that the data do not rule out, with their share of the best one's weight: {}.",
+        texts.join(", ")
+    ))
 }
 
 fn percent(share: f64) -> String {

@@ -6,15 +6,16 @@ use std::path::{Path, PathBuf};
 use super::file::{DataFile, FreeFile, ModelFile, ParameterFile};
 use super::film_peaks::FilmPeaks;
 use super::load::input_file;
-use super::predict::Values;
 use super::peaks::PeaksProblem;
+use super::predict::Values;
 use super::spectra::{SpectraProblem, SpectraSetup};
 use super::{InputFile, JobError, JobFile, synthetic};
 use crate::bsdf::Model;
 use crate::bsdf::{CoatedBase, Design};
 use crate::fit::{Assignment, Control, Fit, Loss, Prior, Residuals, Role, fit, parse_tie};
 use crate::measure::{
-    Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, TableText, ThinFilmLaw, read_table,
+    Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, TableText,
+    ThinFilmLaw, read_table,
 };
 use crate::parameter::{Parameter, Spread};
 
@@ -39,7 +40,11 @@ pub(super) enum Comparison {
 }
 
 /// The readings of a job's data section and the file they came from.
-pub(super) fn read_data(data: &DataFile, folder: &Path, file: &JobFile) -> Result<(Table, Option<InputFile>), JobError> {
+pub(super) fn read_data(
+    data: &DataFile,
+    folder: &Path,
+    file: &JobFile,
+) -> Result<(Table, Option<InputFile>), JobError> {
     let mut input = None;
     let mut table = match (&data.file, &data.layout, &data.synthetic) {
         (Some(name), Some(layout), None) => {
@@ -184,11 +189,7 @@ impl CheckedCase {
 }
 
 /// The problem of the fitted spectra.
-pub(super) fn spectra_problem(
-    file: &JobFile,
-    table: &GonioTable,
-    fitted: &[bool],
-) -> Result<SpectraProblem, JobError> {
+pub(super) fn spectra_problem(file: &JobFile, table: &GonioTable, fitted: &[bool]) -> Result<SpectraProblem, JobError> {
     let ModelFile::CoatedBase(design) = &file.model else {
         let problem = "`thin-film-law` predicts peak wavelengths, and the table holds spectra; use `coated-base`";
         return Err(JobError::key("model.kind", problem));
@@ -332,11 +333,7 @@ fn calibrated(name: &str, instrument: &Instrument) -> bool {
 /// How far a gain may move from its first estimate, each way.
 const GAIN_RANGE: f64 = 1e4;
 
-fn free_assignment(
-    parameter: &Parameter,
-    free: &FreeFile,
-    gains: &Values,
-) -> Result<Assignment, String> {
+fn free_assignment(parameter: &Parameter, free: &FreeFile, gains: &Values) -> Result<Assignment, String> {
     let gain = gains.get(&parameter.name).copied();
     let lower = free.lower.unwrap_or_else(|| gain.map_or(parameter.lower, |gain| gain / GAIN_RANGE));
     let upper = free.upper.unwrap_or_else(|| gain.map_or(parameter.upper, |gain| gain * GAIN_RANGE));

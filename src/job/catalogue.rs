@@ -73,7 +73,8 @@ impl fmt::Display for ModelEntry {
         }
         writeln!(formatter, "\n  Its parameters (default, range, unit):\n")?;
         for parameter in &self.parameters {
-            let range = format!("{} [{} to {}] {}", parameter.default, parameter.lower, parameter.upper, parameter.unit);
+            let range =
+                format!("{} [{} to {}] {}", parameter.default, parameter.lower, parameter.upper, parameter.unit);
             writeln!(formatter, "    {:<28} {:<28} {}", parameter.name, range.trim_end(), parameter.text)?;
         }
         Ok(())

@@ -31,7 +31,8 @@ pub fn describe(job: &Job) -> Result<String, JobError> {
         let _ = writeln!(text, "  {}", model_note(&case.file)?.text);
         let _ = writeln!(text, "  from {} starts, seed {}", settings.starts, settings.seed);
         for (parameter, assignment) in residuals.parameters().iter().zip(&case.assignments) {
-            let _ = writeln!(text, "  {:<30} {}", parameter.name, role_text(parameter, assignment, residuals.parameters()));
+            let _ =
+                writeln!(text, "  {:<30} {}", parameter.name, role_text(parameter, assignment, residuals.parameters()));
         }
     }
     Ok(text.trim_end().to_owned())

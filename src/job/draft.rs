@@ -75,7 +75,9 @@ fn sections(layout: &TableLayout) -> (String, &'static str) {
         ),
         TableLayout::Spectra(layout) => {
             let (gain, why) = match layout.quantity {
-                Quantity::Reflectance => ("per-spectrum", "a reflectance against a white standard has no absolute scale"),
+                Quantity::Reflectance => {
+                    ("per-spectrum", "a reflectance against a white standard has no absolute scale")
+                }
                 Quantity::Brdf | Quantity::BsdfCos => ("shared", "one factor for the whole table"),
             };
             (

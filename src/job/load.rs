@@ -39,7 +39,8 @@ impl Job {
         let input = input_file(&file_path, &bytes);
         let text = String::from_utf8(bytes).map_err(|_| unreadable("it is not UTF-8 text".into()))?;
         let folder = file_path.parent().map_or_else(|| PathBuf::from("."), Path::to_owned);
-        let named = if path.is_dir() { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() };
+        let named =
+            if path.is_dir() { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() };
         let name = named.file_stem().map_or_else(|| "job".into(), |stem| stem.to_string_lossy().into_owned());
         let file = parse(&text).map_err(|message| JobError::Syntax { path: file_path, message })?;
         Ok(Self { name, folder, file, text, inputs: vec![input] })

@@ -25,9 +25,7 @@ pub use catalogue::{ModelEntry, models};
 pub use describe::describe;
 pub use draft::draft;
 pub use error::JobError;
-pub use file::{
-    AlternativeFile, DataFile, FreeFile, JobFile, ModelFile, ParameterFile, PriorFile, SyntheticFile,
-};
+pub use file::{AlternativeFile, DataFile, FreeFile, JobFile, ModelFile, ParameterFile, PriorFile, SyntheticFile};
 pub use load::Job;
 pub use outcome::{
     Case, CaseData, InputFile, ModelNote, Outcome, PeakFit, Prediction, SpectrumFit, Support, ThicknessOrder, Truth,

@@ -4,8 +4,8 @@ use super::file::ModelFile;
 use super::outcome::ModelNote;
 use super::{JobError, JobFile};
 use crate::bsdf::CoatedBase;
-use crate::optics::Reference;
 use crate::measure::{Calibration, Instrument, PhaseJumps};
+use crate::optics::Reference;
 
 /// Sentences, materials and works to cite.
 pub(super) fn model_note(file: &JobFile) -> Result<ModelNote, JobError> {

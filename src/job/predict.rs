@@ -17,11 +17,7 @@ pub(super) fn values_by_name(fit: &Fit) -> Values {
 
 /// Fits a job's model to these spectra. Names in the job's list of parameters that its model does not have (those of a
 /// film that was taken away) are passed over. No fit where nothing is free.
-pub(super) fn solve(
-    file: &JobFile,
-    table: &GonioTable,
-    control: &Control,
-) -> Result<(Values, Option<Fit>), JobError> {
+pub(super) fn solve(file: &JobFile, table: &GonioTable, control: &Control) -> Result<(Values, Option<Fit>), JobError> {
     let problem = spectra_problem(file, table, &vec![true; table.spectra.len()])?;
     let declared = problem.parameters();
     let mut typed = file.parameters.clone();
@@ -46,10 +42,8 @@ pub(super) fn solve(
 pub(super) fn predict(file: &JobFile, table: &GonioTable, values: &Values) -> Result<Vec<Vec<f64>>, JobError> {
     let problem = spectra_problem(file, table, &vec![true; table.spectra.len()])?;
     let declared = problem.parameters();
-    let all: Vec<f64> = declared
-        .iter()
-        .map(|parameter| values.get(&parameter.name).copied().unwrap_or(parameter.default))
-        .collect();
+    let all: Vec<f64> =
+        declared.iter().map(|parameter| values.get(&parameter.name).copied().unwrap_or(parameter.default)).collect();
     let mut readings = problem.readings(&all);
     for (spectrum, model) in table.spectra.iter().zip(&mut readings) {
         let unseen = |word: &str, calibration| {

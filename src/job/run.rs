@@ -2,8 +2,8 @@
 
 use super::answer::{case_answer, job_answer};
 use super::case::{CheckedCase, Comparison};
-use super::film_peaks::FilmPeaks;
 use super::file::ModelFile;
+use super::film_peaks::FilmPeaks;
 use super::model_note::model_note;
 use super::outcome::{Case, CaseData, Outcome, PeakFit, Prediction, SpectrumFit, ThicknessOrder, Truth};
 use super::peaks::PeaksProblem;

@@ -7,8 +7,5 @@ use super::{JobFile, Outcome};
 /// File name and text of each schema.
 pub fn schemas() -> Vec<(&'static str, String)> {
     let text = |schema: &Schema| format!("{:#}\n", schema.as_value());
-    vec![
-        ("job.schema.json", text(&schema_for!(JobFile))),
-        ("result.schema.json", text(&schema_for!(Outcome))),
-    ]
+    vec![("job.schema.json", text(&schema_for!(JobFile))), ("result.schema.json", text(&schema_for!(Outcome)))]
 }

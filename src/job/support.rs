@@ -63,7 +63,11 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
         "{verdict}: leaving out one incidence at a time, the film lowers the mean squared prediction error by {gain:.3} \
          ± {gain_standard_error:.3} ({}; more than two standard errors would be needed), and its thickness is of \
          {orders} of interference in every fold.",
-        if seen.spectra.iter().all(|spectrum| spectrum.sigmas.is_some()) { "in units of σ²" } else { "as a share of the mean squared reading" },
+        if seen.spectra.iter().all(|spectrum| spectrum.sigmas.is_some()) {
+            "in units of σ²"
+        } else {
+            "as a share of the mean squared reading"
+        },
     );
     Ok(Some(Support {
         incidences_deg,
@@ -137,7 +141,11 @@ fn quarter_order_nm(design: &Design, table: &GonioTable, values: &Values, name: 
     let model = CoatedBase::new(design, &[shortest_nm])?;
     let at = |thickness_nm: f64| {
         let all = model.parameters().iter().map(|parameter| {
-            if parameter.name == name { thickness_nm } else { values.get(&parameter.name).copied().unwrap_or(parameter.default) }
+            if parameter.name == name {
+                thickness_nm
+            } else {
+                values.get(&parameter.name).copied().unwrap_or(parameter.default)
+            }
         });
         model.optical_thickness_nm(&all.collect::<Vec<f64>>(), shortest_nm)
     };

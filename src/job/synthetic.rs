@@ -35,11 +35,13 @@ pub(super) fn readings(recipe: &SyntheticFile, file: &JobFile) -> Result<GonioTa
         return Err(key("mirror_deg", format!("found {angle}; expected inclinations from 0 to below 90 degrees")));
     }
     if !(0.0..1.0).contains(&recipe.noise) {
-        return Err(key("noise", format!("found {}; expected a share of each reading from 0 to below 1", recipe.noise)));
+        return Err(key(
+            "noise",
+            format!("found {}; expected a share of each reading from 0 to below 1", recipe.noise),
+        ));
     }
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by LARGEST_TABLE above")]
-    let wavelengths_nm: Vec<f64> =
-        (0..count as u32).map(|step| first_nm + recipe.step_nm * f64::from(step)).collect();
+    let wavelengths_nm: Vec<f64> = (0..count as u32).map(|step| first_nm + recipe.step_nm * f64::from(step)).collect();
     let spectra = recipe
         .mirror_deg
         .iter()

@@ -234,15 +234,13 @@ pub enum TableProblem {
         /// The value.
         found: f64,
     },
-    /// Ratios of the size of percents.
+    /// A ratio of the size of a percentage.
     #[error(
-        "readings go up to {largest} (in line {line}) and the job does not say their unit; if 100 is the white standard, write percent = true; if 1 is, percent = false"
+        "found the reflectance {found}, and the job does not say its unit; if 100 is the white standard, write percent = true; if 1 is, percent = false"
     )]
     Percent {
-        /// The largest reading.
-        largest: f64,
-        /// Its line.
-        line: u64,
+        /// The value.
+        found: f64,
     },
     /// An inclination out of range.
     #[error(
@@ -322,9 +320,9 @@ pub enum TableProblem {
         first_line: u64,
     },
     /// Nothing left after the job's choice of rows and wavelengths.
-    #[error("none of the {rows} rows is left: {}; widen the job's choice", left_out(*.by_only, *.by_window, *.by_negative))]
+    #[error("of {rows} readings nothing is left: {}; widen the job's choice", left_out(*.by_only, *.by_window, *.by_negative))]
     NothingLeft {
-        /// Rows read.
+        /// Readings in the file, or in the spectrum at this place.
         rows: u64,
         /// Left out by `only`.
         by_only: u64,

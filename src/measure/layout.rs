@@ -2,9 +2,32 @@
 //!
 //! A unit that a job states is believed. One that it leaves out is nm, degrees and a plain ratio, and the reader refuses
 //! a table whose numbers speak against that: a table in µm must never be read as one in nm.
+//!
+//! A long table of reflectances in percent, one row a reading:
+//!
+//! ```toml
+//! [spectra]
+//! quantity = "reflectance"
+//! percent = true
+//! window_nm = [320, 700]
+//! sigma = { relative = 0.02, absolute = 0.1 }
+//! [spectra.columns.long]
+//! angles = { mirror = "incidence_deg" }
+//! wavelength = "wavelength_nm"
+//! value = "reflectance_percent"
+//! ```
+//!
+//! A wide one, whose two spectra were taken at 15° and 30°: `columns.wide = { wavelength = "wl", angles = { mirror = [15,
+//! 30] } }` in place of the last table. Peaks as a paper prints them:
+//!
+//! ```toml
+//! [peaks]
+//! angles = { mirror = "incidence_deg" }
+//! wavelength = "peak_nm"
+//! sigma = { absolute = 1 }
+//! ```
 
 use std::collections::BTreeMap;
-use std::num::NonZeroUsize;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -43,7 +66,8 @@ pub struct SpectraLayout {
     pub window_nm: Option<[f64; 2]>,
     /// Keep the first of each so many wavelengths of a spectrum, after the window: 5 makes a 1 nm grid a 5 nm one.
     #[serde(default = "every_one")]
-    pub stride: NonZeroUsize,
+    #[schemars(range(min = 1))]
+    pub stride: usize,
     /// Keep only the rows that hold these values in these columns: `{ kept_by_authors = 1 }`. Long tables alone.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub only: BTreeMap<String, Cell>,
@@ -285,6 +309,6 @@ impl Delimiter {
     }
 }
 
-fn every_one() -> NonZeroUsize {
-    NonZeroUsize::MIN
+fn every_one() -> usize {
+    1
 }

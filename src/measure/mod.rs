@@ -1,5 +1,6 @@
 //! Measurements: the geometry of a reading, tables of readings, the instrument that took them, and colour.
 
+pub mod colour;
 mod error;
 mod geometry;
 mod guess;

@@ -40,7 +40,7 @@ pub(crate) fn meaning<'a>(mut geometries: impl Iterator<Item = &'a Geometry>) ->
 }
 
 fn angle(degrees: f64) -> String {
-    super::number::minus(&format!("{:.1}", degrees).trim_end_matches('0').trim_end_matches('.').replace("-0", "0"))
+    crate::number::minus(&format!("{:.1}", degrees).trim_end_matches('0').trim_end_matches('.').replace("-0", "0"))
 }
 
 /// Spectra chosen for display, as indices in the order of their angles, and how they were chosen.
@@ -71,12 +71,16 @@ pub(crate) fn representative(spectra: &[SpectrumFit]) -> Selection {
     let each = (WANTED_PANELS / incidences.len()).max(1);
     let mut indices = Vec::new();
     for group in &incidences {
-        let mut ranked = group.clone();
-        ranked.sort_by(|a, b| misfit(&spectra[*a]).total_cmp(&misfit(&spectra[*b])));
+        // A spectrum that is masked altogether shows nothing.
+        let mut ranked: Vec<(f64, usize)> = group.iter().filter_map(|i| Some((misfit(&spectra[*i])?, *i))).collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if ranked.is_empty() {
+            continue;
+        }
         let ranks = if each == 1 { vec![ranked.len() / 2] } else { evenly(ranked.len(), each) };
         // Two ranks are the median and the worst: the best of many flatters.
         let ranks = if each == 2 && ranked.len() > 2 { vec![ranked.len() / 2, ranked.len() - 1] } else { ranks };
-        indices.extend(ranks.into_iter().map(|rank| ranked[rank]));
+        indices.extend(ranks.into_iter().map(|rank| ranked[rank].1));
     }
     let chosen = match each {
         1 => "the one with the median misfit",
@@ -131,13 +135,13 @@ fn evenly(count: usize, wanted: usize) -> Vec<usize> {
     (0..wanted).map(|i| i * (count - 1) / (wanted - 1)).collect()
 }
 
-/// Root mean square residual over the mean size of a reading, masked readings left out.
-fn misfit(spectrum: &SpectrumFit) -> f64 {
-    let (mut squares, mut sizes) = (0.0, 0.0);
+/// Root mean square residual over the mean size of a reading, masked readings left out; nothing where none is left.
+fn misfit(spectrum: &SpectrumFit) -> Option<f64> {
+    let (mut count, mut squares, mut sizes) = (0.0, 0.0, 0.0);
     for reading in super::readings::of(spectrum).filter(|r| r.used) {
+        count += 1.0;
         squares += reading.residual().powi(2);
         sizes += reading.measured.abs();
     }
-    let count = super::chart::length(spectrum.measured.len()).max(1.0);
-    if sizes > 0.0 { (squares / count).sqrt() / (sizes / count) } else { f64::INFINITY }
+    (sizes > 0.0).then(|| f64::sqrt(squares / count) / (sizes / count))
 }

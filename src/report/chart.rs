@@ -6,7 +6,7 @@
 use super::palette::{Colour, Scale};
 
 /// Width in page pixels of a figure that fills the page.
-pub(crate) const PAGE_WIDTH: u32 = 800;
+pub(crate) const PAGE_WIDTH: u32 = 920;
 
 /// One picture: a file of the report.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,7 +9,7 @@ const TITLE_SIZE: f64 = 14.0;
 const CELL_TITLE_SIZE: f64 = 12.0;
 const LABEL_SIZE: f64 = 12.0;
 const TICK_SIZE: f64 = 11.0;
-const MARGIN: f64 = 10.0;
+const MARGIN: f64 = 4.0;
 const TITLE_HEIGHT: f64 = 26.0;
 const CELL_TITLE_HEIGHT: f64 = 20.0;
 const LEGEND_ROW_HEIGHT: f64 = 20.0;
@@ -50,19 +50,28 @@ pub(crate) fn drawing(figure: &Figure) -> Drawing {
     top = legend(figure, top, &mut shapes);
 
     let columns = figure.columns.max(1);
-    let column_width = (width - 2.0 * MARGIN + GAP) / length(columns) - GAP;
-    let tick_width = figure.cells.iter().map(widest_y_tick).fold(0.0, f64::max);
+    // Left of each frame: the axis's name in the first column, ticks in all, unless all cells have the same rows.
+    let tick_width = figure.cells.iter().map(widest_y_tick).fold(0.0, f64::max) + TICK_LENGTH + 4.0;
+    let shares_rows = figure.cells.len() <= columns && have_same_bands(&figure.cells);
+    let lead = |column: usize| match column {
+        0 => LABEL_ROW_HEIGHT + tick_width,
+        _ if shares_rows => TICK_SIZE,
+        _ => tick_width,
+    };
+    let leads: f64 = (0..columns).map(lead).sum();
+    let frame_width = (width - 2.0 * MARGIN - leads - GAP * length(columns - 1)) / length(columns);
     for (row, cells) in figure.cells.chunks(columns).enumerate() {
         let heights: Vec<f64> = cells
             .iter()
             .enumerate()
             .map(|(column, cell)| {
-                let left = MARGIN + length(column) * (column_width + GAP);
+                let before: f64 = (0..column).map(|c| lead(c) + frame_width + GAP).sum();
                 let place = CellPlace {
-                    left,
+                    left: MARGIN + before,
                     top,
-                    right: left + column_width,
-                    tick_width,
+                    lead: lead(column),
+                    frame_width,
+                    ticks_y: column == 0 || !shares_rows,
                     names_y: column == 0,
                     names_x: (row + 1) * columns + column >= figure.cells.len(),
                 };
@@ -123,34 +132,43 @@ fn sample(look: Look, (x, y): (f64, f64), shapes: &mut Vec<Shape>) {
 struct CellPlace {
     left: f64,
     top: f64,
-    right: f64,
-    /// Width of the widest y tick of the whole figure, so that frames stand in line.
-    tick_width: f64,
-    /// Whether this cell writes the names of its axes; neighbours share them.
+    /// Room left of the frame, and the frame's own width, so that frames stand in line.
+    lead: f64,
+    frame_width: f64,
+    /// Whether this cell writes the ticks of its y axis and the names of its axes; neighbours share them.
+    ticks_y: bool,
     names_y: bool,
     names_x: bool,
 }
 
 /// Draws a cell and returns its height.
 fn lay_cell(cell: &Cell, place: CellPlace, shapes: &mut Vec<Shape>) -> f64 {
-    let left = place.left + LABEL_ROW_HEIGHT + place.tick_width + TICK_LENGTH + 4.0;
+    let left = place.left + place.lead;
+    let right = left + place.frame_width - 6.0;
     let mut top = place.top;
     if !cell.title.is_empty() {
-        let title = shortened(&cell.title, CELL_TITLE_SIZE, true, place.right - left);
+        let title = shortened(&cell.title, CELL_TITLE_SIZE, true, right - left);
         shapes.push(text(title, (left, top + 8.0), CELL_TITLE_SIZE, Align::Start).bold());
         top += CELL_TITLE_HEIGHT;
     }
     for (index, chart) in cell.charts.iter().enumerate() {
         let is_last = index + 1 == cell.charts.len();
-        let frame = Frame { left, top, right: place.right - 6.0, bottom: top + chart.height };
+        let frame = Frame { left, top, right, bottom: top + chart.height };
         lay_chart(chart, frame, shapes);
-        y_axis(&chart.y, frame, place.names_y.then_some(place.left + 7.0), shapes);
+        if place.ticks_y {
+            y_ticks(&chart.y, frame, shapes);
+        }
+        if place.names_y {
+            let at = (place.left + 7.0, (frame.top + frame.bottom) / 2.0);
+            let label = shortened(&chart.y.label, LABEL_SIZE, false, frame.height() + GAP);
+            shapes.push(text(label, at, LABEL_SIZE, Align::Middle).upwards());
+        }
         top = frame.bottom;
         if is_last {
             x_ticks(&chart.x, frame, shapes);
             top += TICK_LENGTH + TICK_ROW_HEIGHT;
             if place.names_x {
-                let label = shortened(&chart.x.label, LABEL_SIZE, false, place.right - place.left);
+                let label = shortened(&chart.x.label, LABEL_SIZE, false, frame.width() + 2.0 * GAP);
                 let middle = (frame.left + frame.right) / 2.0;
                 shapes.push(text(label, (middle, top + 5.0), LABEL_SIZE, Align::Middle).into());
                 top += LABEL_ROW_HEIGHT;
@@ -262,12 +280,15 @@ fn lay_map(map: &Map, chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
                 end += 1;
             }
             if let (Some(left), Some(right)) = (border(column), border(end)) {
-                let (from, to) = ((left, top), (right, bottom));
+                // A little under its neighbours, which are drawn later, so that no seam shows between them.
+                let overlap = if map.with_numbers { 0.0 } else { 0.6 };
+                let (from, to) =
+                    ((left, top), ((right + overlap).min(frame.right), (bottom + overlap).min(frame.bottom)));
                 shapes.push(Shape::Rectangle { from, to, colour: colour.unwrap_or(PALE) });
                 match (colour, row[column]) {
                     (Some(colour), Some(value)) if map.with_numbers => {
                         let ink = if is_light(colour) { BLACK } else { WHITE };
-                        let number = super::number::to_place(value, -2);
+                        let number = crate::number::to_place(value, -2);
                         let at = ((left + right) / 2.0, (top + bottom) / 2.0);
                         shapes.push(text(number, at, TICK_SIZE, Align::Middle).coloured(ink));
                     }
@@ -308,7 +329,11 @@ fn colour_bar(map: &Map, frame: Frame, top: f64, shapes: &mut Vec<Shape>) -> f64
         let edge = |s: u32| bar.left + bar.width() * f64::from(s) / f64::from(STEPS);
         let value = low + (high - low) * (f64::from(step) + 0.5) / f64::from(STEPS);
         let colour = map.scale.colour(value);
-        shapes.push(Shape::Rectangle { from: (edge(step), top), to: (edge(step + 1), bar.bottom), colour });
+        shapes.push(Shape::Rectangle {
+            from: (edge(step), top),
+            to: ((edge(step + 1) + 0.6).min(bar.right), bar.bottom),
+            colour,
+        });
     }
     let axis = Axis::linear(map.label.clone(), (low, high));
     x_ticks(&axis, bar, shapes);
@@ -320,7 +345,7 @@ fn colour_bar(map: &Map, frame: Frame, top: f64, shapes: &mut Vec<Shape>) -> f64
 
 fn x_ticks(axis: &Axis, frame: Frame, shapes: &mut Vec<Shape>) {
     let mut free_from = f64::NEG_INFINITY;
-    for tick in ticks(axis, frame.width() / 62.0) {
+    for tick in ticks(axis, frame.width() / 46.0) {
         let Some(x) = place_x(axis, tick.at, frame) else { continue };
         if !matches!(axis.kind, AxisKind::Bands(_)) {
             shapes.push(line(&[(x, frame.bottom), (x, frame.bottom + TICK_LENGTH)], INK, 1.0));
@@ -334,24 +359,29 @@ fn x_ticks(axis: &Axis, frame: Frame, shapes: &mut Vec<Shape>) {
     }
 }
 
-/// Ticks left of the frame and, where `name_at` gives a place for it, the axis's name beside them.
-fn y_axis(axis: &Axis, frame: Frame, name_at: Option<f64>, shapes: &mut Vec<Shape>) {
+fn y_ticks(axis: &Axis, frame: Frame, shapes: &mut Vec<Shape>) {
     let mut last: Option<f64> = None;
     for tick in ticks(axis, frame.height() / 30.0) {
         let Some(y) = place_y(axis, tick.at, frame) else { continue };
         if !matches!(axis.kind, AxisKind::Bands(_)) {
             shapes.push(line(&[(frame.left - TICK_LENGTH, y), (frame.left, y)], INK, 1.0));
         }
-        if last.is_none_or(|l| (l - y).abs() >= 12.0) {
+        if last.is_none_or(|l| (l - y).abs() >= 13.0) {
             let label = shortened(&tick.label, TICK_SIZE, false, WIDEST_TICK);
             shapes.push(text(label, (frame.left - TICK_LENGTH - 3.0, y), TICK_SIZE, Align::End).into());
             last = Some(y);
         }
     }
-    if let Some(x) = name_at {
-        let label = shortened(&axis.label, LABEL_SIZE, false, frame.height() + 16.0);
-        shapes.push(text(label, (x, (frame.top + frame.bottom) / 2.0), LABEL_SIZE, Align::Middle).upwards());
-    }
+}
+
+/// Whether all cells have the same named rows, so that naming them once is enough.
+fn have_same_bands(cells: &[Cell]) -> bool {
+    let bands = |cell: &Cell| match cell.charts.as_slice() {
+        [Chart { y: Axis { kind: AxisKind::Bands(names), .. }, .. }] => Some(names.clone()),
+        _ => None,
+    };
+    let mut all = cells.iter().map(bands);
+    all.next().flatten().is_some_and(|first| all.all(|other| other.as_ref() == Some(&first)))
 }
 
 /// The widest label beside a y axis, page pixels; longer names are cut.

@@ -193,7 +193,7 @@ fn fit_text(fit: &Fit, bibliography: &mut Bibliography) -> String {
         robust => format!(
             "a robust sum of residuals ({} beyond {} σ {})",
             loss_name(robust),
-            super::number::plain(s.loss_scale),
+            crate::number::plain(s.loss_scale),
             bibliography.cite(HUBER)
         ),
     };
@@ -217,7 +217,7 @@ fn fit_text(fit: &Fit, bibliography: &mut Bibliography) -> String {
          argmin {argmin}, {starts} (at most {} iterations each, seed {}). Derivatives are finite differences with a step \
          chosen for each parameter. {weights}",
         fit.goodness.free_parameters,
-        super::number::count(u64::try_from(fit.goodness.readings).unwrap_or(u64::MAX)),
+        crate::number::count(u64::try_from(fit.goodness.readings).unwrap_or(u64::MAX)),
         s.max_iterations,
         s.seed
     )
@@ -243,7 +243,7 @@ fn uncertainty_text(fit: &Fit, bibliography: &mut Bibliography) -> String {
         .iter()
         .filter_map(|e| {
             let [mean, sigma] = e.prior?;
-            Some(format!("{} {}", e.name, with_unit(&super::number::with_error(mean, Some(sigma)), &e.unit)))
+            Some(format!("{} {}", e.name, with_unit(&crate::number::with_error(mean, Some(sigma)), &e.unit)))
         })
         .collect();
     let priors =

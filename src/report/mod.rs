@@ -29,7 +29,6 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::job::{Case, Outcome};
-use crate::number;
 use chart::Figure;
 use plots::Place;
 

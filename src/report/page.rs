@@ -3,13 +3,14 @@
 use askama::Template;
 
 use super::methods::{self, Methods};
-use super::number::{count, significant};
 use super::plots::Place;
 use super::swatch::{self, Swatches};
 use super::tables::{self, Minima, OrderRow, ParameterRow};
 use super::{Chapter, Picture, ReportError, readings};
 use crate::fit::Settings;
 use crate::job::{Outcome, Support};
+use crate::measure::colour::Swatch;
+use crate::number::{count, significant, to_place};
 
 /// The page as HTML.
 pub(crate) fn html(outcome: &Outcome, chapters: &[Chapter]) -> Result<String, ReportError> {
@@ -165,28 +166,29 @@ struct SwatchTable {
 /// One geometry's colours.
 struct SwatchRow {
     name: String,
-    measured: SwatchCell,
-    fitted: SwatchCell,
-    delta_e: String,
+    /// Measured and fitted.
+    cells: [SwatchCell; 2],
+    difference: String,
 }
 
 /// A colour as style and as numbers.
 struct SwatchCell {
-    css: String,
-    lab: String,
+    hex: String,
+    lab: [String; 3],
+    clipped: bool,
 }
 
 impl SwatchTable {
     fn new(swatches: &Swatches) -> Self {
-        let cell = |seen: &swatch::Seen| SwatchCell {
-            css: seen.css.clone(),
-            lab: seen.lab.map(|v| super::number::to_place(v, -1)).join("  "),
+        let cell = |seen: &Swatch| SwatchCell {
+            hex: seen.hex.clone(),
+            lab: [seen.lab.l, seen.lab.a, seen.lab.b].map(|v| to_place(v, -1)),
+            clipped: seen.clipped,
         };
         let row = |pair: &swatch::Pair| SwatchRow {
             name: pair.name.clone(),
-            measured: cell(&pair.measured),
-            fitted: cell(&pair.fitted),
-            delta_e: super::number::to_place(pair.delta_e, -1),
+            cells: [cell(&pair.measured), cell(&pair.fitted)],
+            difference: to_place(pair.difference(), -1),
         };
         Self { pairs: swatches.pairs.iter().map(row).collect(), caption: swatches.caption.clone() }
     }
@@ -194,7 +196,6 @@ impl SwatchTable {
 
 /// The verdict on a film.
 struct SupportView<'a> {
-    verdict: &'static str,
     text: &'a str,
     numbers: Vec<(&'static str, String)>,
 }
@@ -204,7 +205,7 @@ impl<'a> SupportView<'a> {
         let mut numbers = vec![
             (
                 "Gain in mean squared prediction error",
-                super::number::with_error(support.gain, Some(support.gain_standard_error)),
+                crate::number::with_error(support.gain, Some(support.gain_standard_error)),
             ),
             ("Same order of interference in every fold", if support.same_order { "yes" } else { "no" }.to_owned()),
         ];
@@ -216,8 +217,7 @@ impl<'a> SupportView<'a> {
             );
             numbers.push(("AICc with film − without", text));
         }
-        let verdict = if support.supported { "A film is supported." } else { "No film is supported." };
-        Self { verdict, text: &support.text, numbers }
+        Self { text: &support.text, numbers }
     }
 }
 

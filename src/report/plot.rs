@@ -4,10 +4,10 @@
 //! has whole-pixel coordinates, so both are painted larger than shown: the SVG's view box undoes it, and the PNG is
 //! averaged down, which also smooths its edges.
 
-use std::io::Cursor;
 use std::sync::OnceLock;
 
-use image::{ImageFormat, RgbImage};
+use image::RgbImage;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use plotters::backend::DrawingBackend;
 use plotters::element::{Circle, PathElement, Polygon, Rectangle, Text};
 use plotters::prelude::{BitMapBackend, DrawingArea, IntoDrawingArea, IntoFont, SVGBackend};
@@ -105,9 +105,10 @@ pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PaintError> {
         paint(&area, drawing, scale)?;
         area.present().map_err(failed)?;
     }
-    let mut bytes = Cursor::new(Vec::new());
-    averaged(&painted, OVERSAMPLING.unsigned_abs()).write_to(&mut bytes, ImageFormat::Png).map_err(failed)?;
-    Ok(bytes.into_inner())
+    let mut bytes = Vec::new();
+    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive);
+    averaged(&painted, OVERSAMPLING.unsigned_abs()).write_with_encoder(encoder).map_err(failed)?;
+    Ok(bytes)
 }
 
 /// plotters takes a font's size as its line height, 1.24 of the em that typographers name.

@@ -35,7 +35,15 @@ pub(crate) fn quantity_label(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Brdf => "BRDF (1/sr)",
         Quantity::BsdfCos => "BRDF × cos θₒ (1/sr)",
-        Quantity::Reflectance => "reflectance (white standard = 1)",
+        Quantity::Reflectance => "reflectance",
+    }
+}
+
+/// What a reader must know of the quantity's scale.
+pub(crate) fn quantity_note(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Reflectance => "Reflectance is relative to a white standard in the same instrument, which has 1.",
+        Quantity::Brdf | Quantity::BsdfCos => "",
     }
 }
 
@@ -63,5 +71,5 @@ pub(crate) fn rms(case: &Case) -> Option<String> {
         return None;
     }
     let mean = residuals.iter().map(|r| r * r).sum::<f64>() / super::chart::length(residuals.len());
-    Some(format!("{}{unit}", super::number::significant(mean.sqrt(), 3)))
+    Some(format!("{}{unit}", crate::number::significant(mean.sqrt(), 3)))
 }

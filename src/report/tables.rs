@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
-use super::number::{beside_error, count, percent, plain, significant, with_error};
 use super::readings;
 use crate::fit::{Bound, Estimate, Fit, Goodness, Minimum, SigmaSource, StopReason};
 use crate::job::{Case, ThicknessOrder, Truth};
+use crate::number::{beside_error, count, percent, plain, significant, with_error};
 
 /// Correlations of at least this size are listed.
 pub(crate) const STRONG_CORRELATION: f64 = 0.9;
 /// A minimum with more than this share of the best one's weight is a rival.
 const RIVAL_SHARE: f64 = 0.05;
 /// Most parameters that the table of minima has columns for.
-const MOST_MINIMUM_COLUMNS: usize = 6;
+const MOST_MINIMUM_COLUMNS: usize = 5;
 /// Parameters named in the comparison of cases.
 const MAIN_PARAMETERS: usize = 4;
 
@@ -28,8 +28,9 @@ pub(crate) struct ParameterRow {
     pub(crate) start: String,
     pub(crate) bounds: String,
     pub(crate) role: String,
-    /// At a bound, open, prior: sentences.
+    /// At a bound, open: sentences.
     pub(crate) notes: Vec<String>,
+    pub(crate) prior: Option<String>,
     pub(crate) truth: String,
     /// (fit − truth)/error.
     pub(crate) deviation: String,
@@ -61,9 +62,6 @@ fn parameter(e: &Estimate, truth: Option<f64>) -> ParameterRow {
     if e.open {
         notes.push("Open: the data do not determine it.".to_owned());
     }
-    if let Some([mean, sigma]) = e.prior {
-        notes.push(format!("Prior {}.", with_unit(&with_error(mean, Some(sigma)), &e.unit)));
-    }
     ParameterRow {
         symbol: e.symbol.clone(),
         name: e.name.clone(),
@@ -81,6 +79,7 @@ fn parameter(e: &Estimate, truth: Option<f64>) -> ParameterRow {
         bounds: e.bounds.map(|b| range(b, &plain)).unwrap_or_default(),
         role: e.role.clone(),
         notes,
+        prior: e.prior.map(|[mean, sigma]| with_unit(&with_error(mean, Some(sigma)), &e.unit)),
         truth: truth.map(plain).unwrap_or_default(),
         deviation: truth
             .zip(error.filter(|s| *s > 0.0))
@@ -134,7 +133,9 @@ pub(crate) fn minima(fit: &Fit) -> Minima {
     columns.truncate(MOST_MINIMUM_COLUMNS);
     let header = |i: &usize| {
         let e = &fit.estimates[*i];
-        if e.unit.is_empty() { e.name.clone() } else { format!("{} ({})", e.name, e.unit) }
+        let is_unique = fit.estimates.iter().filter(|other| other.symbol == e.symbol).count() == 1;
+        let name = if is_unique { &e.symbol } else { &e.name };
+        if e.unit.is_empty() { name.clone() } else { format!("{name} ({})", e.unit) }
     };
     let row = |(index, m): (usize, &Minimum)| MinimumRow {
         number: index + 1,
@@ -214,7 +215,7 @@ pub(crate) fn strong_correlations(fit: &Fit) -> Vec<String> {
             if let Some(r) = fit.correlations.get(i).and_then(|row| row.get(j)).copied().flatten()
                 && r.abs() >= STRONG_CORRELATION
             {
-                pairs.push((r, format!("{one} and {other}: {}", super::number::to_place(r, -3))));
+                pairs.push((r, format!("{one} and {other}: {}", crate::number::to_place(r, -3))));
             }
         }
     }
@@ -237,7 +238,7 @@ pub(crate) fn goodness(case: &Case) -> Vec<(&'static str, String)> {
     rows.push(("Readings", count(u64::try_from(g.readings).unwrap_or(u64::MAX))));
     rows.push(("Effective readings", effective));
     rows.push(("Free parameters", g.free_parameters.to_string()));
-    rows.push(("Degrees of freedom", super::number::minus(&g.degrees_of_freedom.to_string())));
+    rows.push(("Degrees of freedom", crate::number::minus(&g.degrees_of_freedom.to_string())));
     rows.push(("χ²", significant(g.chi_squared, 4)));
     rows.push((
         "Reduced χ²",
@@ -260,7 +261,7 @@ pub(crate) fn goodness(case: &Case) -> Vec<(&'static str, String)> {
     ));
     rows.push((
         "AICc on effective readings",
-        g.aicc.map_or_else(|| "not available: too few effective readings".to_owned(), |a| significant(a, 5)),
+        g.aicc.map_or_else(|| "not available: too few effective readings".to_owned(), plain),
     ));
     rows.push(("Solver", format!("{}, {} residual evaluations", stop_words(fit.stop), count(fit.evaluations))));
     if fit.not_finite > 0 {
@@ -297,7 +298,7 @@ pub(crate) fn share(weight: f64) -> String {
     if weight > 0.0 && weight < 0.001 {
         "< 0.1 %".to_owned()
     } else {
-        format!("{} %", super::number::to_place(100.0 * weight, -1))
+        format!("{} %", crate::number::to_place(100.0 * weight, -1))
     }
 }
 
@@ -310,6 +311,6 @@ pub(crate) fn with_unit(number: &str, unit: &str) -> String {
 }
 
 fn signed(value: f64) -> String {
-    let text = super::number::to_place(value, -1);
+    let text = crate::number::to_place(value, -1);
     if value > 0.0 { format!("+{text}") } else { text }
 }

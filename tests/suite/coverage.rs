@@ -36,9 +36,8 @@ fn study(item: u64) -> Verdict {
     let count = random.random_range(3..=13_i32);
     let span_deg = random.random_range(20.0..60.0);
     let first_deg = random.random_range(0.0..(75.0 - span_deg));
-    let angles: Vec<String> = (0..count)
-        .map(|step| format!("{}", first_deg + span_deg * f64::from(step) / f64::from(count - 1)))
-        .collect();
+    let angles: Vec<String> =
+        (0..count).map(|step| format!("{}", first_deg + span_deg * f64::from(step) / f64::from(count - 1))).collect();
     let job = format!(
         r#"
         title = "coverage"
@@ -90,7 +89,10 @@ fn run(tables: u64, least: usize, most: usize) {
     let covered = verdicts.iter().filter(|verdict| verdict.covered).count();
     let wrong: Vec<f64> = verdicts.iter().filter(|v| !v.right_order).map(|v| v.truth_nm).collect();
     let seconds: f64 = verdicts.iter().map(|verdict| verdict.seconds).sum();
-    println!("{covered} of {tables} intervals hold the truth; wrong order at {wrong:?}; {:.2} ms a fit", 1e3 * seconds / tables as f64);
+    println!(
+        "{covered} of {tables} intervals hold the truth; wrong order at {wrong:?}; {:.2} ms a fit",
+        1e3 * seconds / tables as f64
+    );
     for verdict in &verdicts {
         assert!(
             verdict.right_order || verdict.truth_listed,

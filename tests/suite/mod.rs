@@ -1,6 +1,7 @@
 //! Table of contents.
 
 mod coated_base;
+mod colour;
 mod coverage;
 mod data;
 mod nist;

@@ -275,7 +275,7 @@ fn each_slip_gets_its_sentence() {
         (
             long("15,400,22.3\n15,410,63.9\n").into(),
             LONG.into(),
-            r#": readings go up to 63.9 (in line 3) and the job does not say their unit; if 100 is the white standard, write percent = true; if 1 is, percent = false"#,
+            r#", line 2, column "value": found the reflectance 22.3, and the job does not say its unit; if 100 is the white standard, write percent = true; if 1 is, percent = false"#,
         ),
         (
             long("95,400,0.2\n").into(),
@@ -347,18 +347,19 @@ fn each_slip_gets_its_sentence() {
         (
             long("15,400,0.2\n").into(),
             with("only = { angle = 20 }"),
-            r#": none of the 1 rows is left: `only` leaves out 1; widen the job's choice"#,
+            r#": of 1 readings nothing is left: `only` leaves out 1; widen the job's choice"#,
         ),
         (
             long("15,400,0.2\n").into(),
             with("window_nm = [500, 600]"),
-            r#": none of the 1 rows is left: `window_nm` leaves out 1; widen the job's choice"#,
+            r#", line 2, column "angle": of 1 readings nothing is left: `window_nm` leaves out 1; widen the job's choice"#,
         ),
         (
             long("15,400,0.2\n").into(),
             with("window_nm = [600, 500]"),
             r#": the job's `window_nm` is [600, 500]; expected [first, last], the first below the last"#,
         ),
+        (long("15,400,0.2\n").into(), with("stride = 0"), ": the job's `stride` is 0; expected 1 or more"),
         (
             long("15,400,0.2\n").into(),
             with("sigma = {}"),
@@ -446,7 +447,7 @@ fn a_job_chooses_rows_and_wavelengths() {
     assert_eq!(drop, [a(&[400.0, 420.0], &[0.2, 0.3]), b.clone()]);
     let stride = read(&format!("{window}negative = \"keep\"\nstride = 2"));
     assert_eq!(stride, [a(&[400.0, 420.0], &[0.2, 0.3]), b.clone()]);
-    assert_eq!(read("only = { bird = \"b\" }"), [b.clone()]);
+    assert_eq!(read("only = { bird = \"b\" }"), std::slice::from_ref(&b));
     assert_eq!(read("only = { angle = 20.0 }"), [b]);
 }
 
@@ -471,7 +472,10 @@ fn wide_tables_come_as_r_writes_them() {
     assert_eq!(one.spectra, both.spectra[1..]);
     let geometry = "{ theta_i_deg = 0, phi_i_deg = 0, theta_o_deg = 45, phi_o_deg = 180 }";
     let four = spectra(table, &WIDE.replace("mirror = [15, 30]", &format!("four = {{ a = {geometry} }}")));
-    assert_eq!(four.spectra[0].geometry.theta_o_deg, 45.0);
+    assert_eq!(
+        four.spectra[0].geometry,
+        Geometry { theta_i_deg: 0.0, phi_i_deg: 0.0, theta_o_deg: 45.0, phi_o_deg: 180.0 }
+    );
     let twice = WIDE.replace("[15, 30]", "[15, 15]").replace("[spectra.c", "replicates = true\n[spectra.c");
     assert_eq!(spectra(table, &twice).spectra.len(), 2);
 }
@@ -590,6 +594,76 @@ fn guesses_of_units_and_repeats_are_marked() {
     for key in ["wavelength_unit", "angle_unit", "replicates", "quantity", "percent"] {
         assert!(guess.notes.iter().any(|note| note.key == key && note.certainty == Certainty::Guessed), "{key}");
     }
+}
+
+/// What `new` writes: every reason stands above its key, and the whole is a layout again.
+#[test]
+fn guesses_are_written_with_their_reasons() {
+    let tables = [
+        "spectrum_id,theta_i,wavelength,R,sd,kept\na,0.5,0.4,0.1,0.01,1\nb,0.5,0.4,0.2,0.01,1\n",
+        "ti;to;wavelength;brdf\n10;20;400;0,1\n",
+        "theta,peak,sd,order\n15,520,1,1\n",
+        "wl,theta15,theta30\n400,20,10\n",
+    ];
+    for table in tables {
+        let (guess, _) = guess(table);
+        let text = guess.commented_toml("data").unwrap();
+        let job: toml::Table = text.parse().unwrap();
+        assert_eq!(job["data"].clone().try_into::<TableLayout>().unwrap(), guess.layout, "{text}");
+        for note in &guess.notes {
+            assert_eq!(text.matches(&note.text).count(), 1, "{}\n{text}", note.text);
+        }
+    }
+    let (teal, _) = guess("wl,bird-1,bird-2\n400,22.5,20\n405,23,21\n");
+    let expected = r#"[data.spectra]
+# GUESS: no name speaks of a BRDF; taken against a white standard
+quantity = "reflectance"
+# GUESS: readings go up to 23, which are percent
+percent = true
+negative = "refuse"
+stride = 1
+replicates = false
+
+[data.spectra.columns.wide]
+# GUESS: "wl" runs from 400 to 405, step 5
+wavelength = "wl"
+
+# TO FILL IN: the file does not hold the angles of its 2 spectra: write the light's inclination in place of each nan, and all four angles if the viewer is not in the mirror direction
+[data.spectra.columns.wide.angles.mirror]
+bird-1 = nan
+bird-2 = nan
+"#;
+    assert_eq!(teal.commented_toml("data").unwrap(), expected);
+}
+
+/// What a job's author gets for a slip in the layout: the line, the key and what it may be.
+#[test]
+fn slips_in_a_layout_name_line_and_key() {
+    let quantity = "quantity = \"reflectance\"";
+    let cases = [
+        (quantity, "quantity = \"colour\"", 3, "expected one of `brdf`, `bsdf_cos`, `reflectance`"),
+        (quantity, "quantity = \"reflectance\"\nstep = 5", 4, "unknown field `step`, expected one of"),
+        (quantity, "", 2, "missing field `quantity`"),
+        ("\"angle\"", "true", 5, "expected a column's name in quotes, or one number for all rows"),
+        ("mirror", "mirrored", 5, "unknown variant `mirrored`, expected `mirror` or `four`"),
+    ];
+    for (right, wrong, line, text) in cases {
+        let found = toml::from_str::<TableLayout>(&LONG.replace(right, wrong)).unwrap_err().to_string();
+        assert!(found.contains(&format!("line {line}")) && found.contains(text), "{found}");
+    }
+}
+
+#[test]
+fn a_layout_is_written_as_it_is_read_and_as_its_schema_says() {
+    let schema = serde_json::to_value(schemars::schema_for!(TableLayout)).unwrap();
+    let schema = jsonschema::validator_for(&schema).unwrap();
+    for toml in [LONG, FOUR, WIDE, PEAKS] {
+        let written = toml::to_string(&layout(toml)).unwrap();
+        assert_eq!(layout(&written), layout(toml), "{written}");
+        assert!(schema.is_valid(&serde_json::to_value(layout(toml)).unwrap()), "{written}");
+    }
+    let unknown_key = serde_json::json!({ "peaks": { "angles": { "mirror": 1 }, "wavelength": "w", "colour": 1 } });
+    assert!(!schema.is_valid(&unknown_key));
 }
 
 /// Reads damaged tables, and their guesses: an error or a table, never a panic, and a table keeps its promises.

@@ -48,7 +48,7 @@ pub(super) fn role(name: &str) -> Role {
         Role::Order
     } else if has(&["reflect", "brdf", "bsdf", "btdf", "radiance"]) || word(&["value", "r", "refl", "percent", "%"]) {
         Role::Value
-    } else if (angle || viewer) && viewer && !light {
+    } else if viewer && !light {
         if azimuth { Role::PhiO } else { Role::ThetaO }
     } else if angle || light {
         if azimuth { Role::PhiI } else { Role::ThetaI }

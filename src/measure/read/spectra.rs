@@ -1,12 +1,11 @@
 //! Spectra as they stand in a file become checked spectra.
 
-use std::num::NonZeroUsize;
 use std::path::Path;
 
 use super::columns::WrittenAngles;
 use super::{checks, long, wide};
 use crate::measure::error::{Place, TableError, TableProblem};
-use crate::measure::layout::{Negative, SpectraColumns, SpectraLayout};
+use crate::measure::layout::{AngleUnit, Negative, SpectraColumns, SpectraLayout};
 use crate::measure::table::{GonioTable, Quantity, Spectrum};
 use crate::measure::text::TableText;
 
@@ -77,6 +76,9 @@ fn check_keys(layout: &SpectraLayout) -> Result<(), TableProblem> {
         let expected = "[first, last], the first below the last";
         return Err(TableProblem::Key { key: "window_nm", found: format!("[{from}, {to}]"), expected });
     }
+    if layout.stride == 0 {
+        return Err(TableProblem::Key { key: "stride", found: "0".to_owned(), expected: "1 or more" });
+    }
     if layout.percent == Some(true) && layout.quantity != Quantity::Reflectance {
         let expected = "left out, since only a reflectance is measured in percent";
         return Err(TableProblem::Key { key: "percent", found: "true".to_owned(), expected });
@@ -112,56 +114,49 @@ impl Checker<'_> {
         let factor = checks::wavelength_factor(self.file, self.layout.wavelength_unit, column, wavelengths)?;
         let unit = checks::angle_unit(self.file, self.layout.angle_unit, spectra.iter().map(|one| one.angles))?;
 
-        let mut seen = checks::Seen::new();
-        let mut table = GonioTable { quantity: self.layout.quantity, spectra: Vec::new() };
-        let (mut by_window, mut by_negative) = (0, 0);
-        let mut largest = (0.0_f64, 0);
-        for spectrum in spectra {
-            let refuse = |problem| TableError::new(self.file, spectrum.place.clone(), problem);
-            let geometry = checks::geometry(spectrum.angles, unit).map_err(refuse)?;
-            let id = spectrum.id.clone().unwrap_or_else(|| checks::name_of(spectrum.angles, &geometry));
-            if !self.layout.replicates {
-                seen.note(&geometry, 0, &id).map_err(refuse)?;
-            }
-            let wavelengths_nm = self.wavelengths_nm(spectrum, factor)?;
-            self.check_order(spectrum, &wavelengths_nm, &id)?;
-            let (mut readings, outside) = self.in_window(spectrum, &wavelengths_nm)?;
-            by_window += outside;
-            thin_out(&mut readings, self.layout.stride);
-            let before = readings.len();
-            if self.layout.negative == Negative::Drop {
-                readings.retain(|reading| reading.value >= 0.0);
-            }
-            by_negative += before - readings.len();
-            if readings.is_empty() {
-                continue;
-            }
-            for reading in &readings {
-                if reading.value > largest.0 {
-                    largest = (reading.value, reading.line);
-                }
-            }
-            let sigmas = self.sigmas(&readings)?;
-            let scale = if self.layout.percent == Some(true) { 0.01 } else { 1.0 };
-            table.spectra.push(Spectrum {
-                id,
-                geometry,
-                wavelengths_nm: readings.iter().map(|reading| reading.wavelength_nm).collect(),
-                values: readings.iter().map(|reading| reading.value * scale).collect(),
-                sigmas: sigmas.map(|sigmas| sigmas.iter().map(|sigma| sigma * scale).collect()),
-            });
-        }
-        if table.spectra.is_empty() {
+        if spectra.is_empty() {
             let Written { rows, left_out, .. } = *self.written;
-            let (by_window, by_negative) = (by_window as u64, by_negative as u64);
-            let problem = TableProblem::NothingLeft { rows, by_only: left_out, by_window, by_negative };
+            let problem = TableProblem::NothingLeft { rows, by_only: left_out, by_window: 0, by_negative: 0 };
             return Err(TableError::new(self.file, Place::File, problem));
         }
-        let (largest, line) = largest;
-        if self.layout.quantity == Quantity::Reflectance && self.layout.percent.is_none() && largest > LARGEST_RATIO {
-            return Err(TableError::new(self.file, Place::File, TableProblem::Percent { largest, line }));
+        let mut seen = checks::Seen::new();
+        let checked = spectra.iter().map(|spectrum| {
+            let checked = self.spectrum(spectrum, factor, unit)?;
+            if !self.layout.replicates {
+                let noted = seen.note(&checked.geometry, 0, &checked.id);
+                noted.map_err(|problem| TableError::new(self.file, spectrum.place.clone(), problem))?;
+            }
+            Ok(checked)
+        });
+        Ok(GonioTable { quantity: self.layout.quantity, spectra: checked.collect::<Result<_, _>>()? })
+    }
+
+    fn spectrum(&self, spectrum: &WrittenSpectrum, factor: f64, unit: AngleUnit) -> Result<Spectrum, TableError> {
+        let refuse = |problem| TableError::new(self.file, spectrum.place.clone(), problem);
+        let geometry = checks::geometry(spectrum.angles, unit).map_err(refuse)?;
+        let id = spectrum.id.clone().unwrap_or_else(|| checks::name_of(spectrum.angles, &geometry));
+        let wavelengths_nm = self.wavelengths_nm(spectrum, factor)?;
+        self.check_order(spectrum, &wavelengths_nm, &id)?;
+
+        let inside = self.in_window(spectrum, &wavelengths_nm)?;
+        let outside = wavelengths_nm.len() - inside.len();
+        let thinned: Vec<Reading> = inside.into_iter().step_by(self.layout.stride).collect();
+        let thinned_count = thinned.len();
+        let dropped = |reading: &Reading| self.layout.negative == Negative::Drop && reading.value < 0.0;
+        let readings: Vec<Reading> = thinned.into_iter().filter(|reading| !dropped(reading)).collect();
+        if readings.is_empty() {
+            let (rows, by_window, by_negative) = (wavelengths_nm.len() as u64, outside as u64, thinned_count as u64);
+            return Err(refuse(TableProblem::NothingLeft { rows, by_only: 0, by_window, by_negative }));
         }
-        Ok(table)
+        let sigmas = self.sigmas(&readings)?;
+        let scale = if self.layout.percent == Some(true) { 0.01 } else { 1.0 };
+        Ok(Spectrum {
+            id,
+            geometry,
+            wavelengths_nm: readings.iter().map(|reading| reading.wavelength_nm).collect(),
+            values: readings.iter().map(|reading| reading.value * scale).collect(),
+            sigmas: sigmas.map(|sigmas| sigmas.iter().map(|sigma| sigma * scale).collect()),
+        })
     }
 
     fn wavelengths_nm(&self, spectrum: &WrittenSpectrum, factor: f64) -> Result<Vec<f64>, TableError> {
@@ -198,12 +193,8 @@ impl Checker<'_> {
         Ok(())
     }
 
-    /// The readings inside the job's window, by rising wavelength, and the number of those outside.
-    fn in_window(
-        &self,
-        spectrum: &WrittenSpectrum,
-        wavelengths_nm: &[f64],
-    ) -> Result<(Vec<Reading>, usize), TableError> {
+    /// The readings inside the job's window, by rising wavelength.
+    fn in_window(&self, spectrum: &WrittenSpectrum, wavelengths_nm: &[f64]) -> Result<Vec<Reading>, TableError> {
         let inside = |wavelength_nm: f64| match self.layout.window_nm {
             Some([from, to]) => (from..=to).contains(&wavelength_nm),
             None => true,
@@ -215,19 +206,27 @@ impl Checker<'_> {
             }
             let place = |column: &str| Place::Cell { line: written.line, column: column.to_owned() };
             let value = self.number(&written.value, || place(&spectrum.value_column))?;
-            if value < 0.0 && self.layout.negative == Negative::Refuse {
-                let problem = TableProblem::NegativeReading { found: value };
-                return Err(TableError::new(self.file, place(&spectrum.value_column), problem));
-            }
+            self.check_value(value)
+                .map_err(|problem| TableError::new(self.file, place(&spectrum.value_column), problem))?;
             let sigma_column = self.written.sigma_column.as_deref().unwrap_or_default();
             let sigma = written.sigma.as_ref().map(|sigma| self.number(sigma, || place(sigma_column))).transpose()?;
             readings.push(Reading { line: written.line, wavelength_nm, value, sigma });
         }
-        let outside = wavelengths_nm.len() - readings.len();
         if wavelengths_nm.len() > 1 && wavelengths_nm[1] < wavelengths_nm[0] {
             readings.reverse();
         }
-        Ok((readings, outside))
+        Ok(readings)
+    }
+
+    fn check_value(&self, found: f64) -> Result<(), TableProblem> {
+        if found < 0.0 && self.layout.negative == Negative::Refuse {
+            return Err(TableProblem::NegativeReading { found });
+        }
+        let unit_known = self.layout.quantity != Quantity::Reflectance || self.layout.percent.is_some();
+        if found > LARGEST_RATIO && !unit_known {
+            return Err(TableProblem::Percent { found });
+        }
+        Ok(())
     }
 
     fn sigmas(&self, readings: &[Reading]) -> Result<Option<Vec<f64>>, TableError> {
@@ -249,13 +248,4 @@ impl Checker<'_> {
             None => Place::Line(line),
         }
     }
-}
-
-/// Keeps the first of each so many readings.
-fn thin_out(readings: &mut Vec<Reading>, stride: NonZeroUsize) {
-    let mut index = 0;
-    readings.retain(|_| {
-        index += 1;
-        (index - 1) % stride == 0
-    });
 }

@@ -1,5 +1,6 @@
 //! Cost against iteration of the start that won.
 
+use super::cost_label;
 use crate::job::Case;
 use crate::report::chart::{
     Axis, Cell, Chart, Figure, Layer, Look, Mark, Series, extent, with_room, with_room_logarithmic,
@@ -22,14 +23,14 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     vec![Figure {
         name: "convergence".to_owned(),
         title: "Convergence of the best start".to_owned(),
-        caption: String::new(),
+        caption: "Cost after each iteration of the start that reached the best minimum.".to_owned(),
         width: 660,
         columns: 1,
         cells: vec![Cell {
             title: String::new(),
             charts: vec![Chart {
                 x: Axis::linear("iteration", with_room(extent(trace.iter().map(|t| iteration(t.iteration))))),
-                y: Axis::logarithmic("cost", with_room_logarithmic(costs)),
+                y: Axis::logarithmic(cost_label(&case.fit), with_room_logarithmic(costs)),
                 height: 170.0,
                 layers: vec![Layer::Series(Series::new(
                     "cost",

@@ -16,7 +16,7 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     }
     let entry = |i: usize, j: usize| matrix[i].get(j).copied().flatten().filter(|r| r.is_finite());
     let shown = strongest(names.len(), entry);
-    let numbered: Vec<String> = shown.iter().enumerate().map(|(n, i)| format!("{}  {}", names[*i], n + 1)).collect();
+    let numbered: Vec<String> = shown.iter().enumerate().map(|(n, i)| format!("{}  {}", n + 1, names[*i])).collect();
     let numbers: Vec<String> = (1..=shown.len()).map(|n| n.to_string()).collect();
     let rows = shown.iter().map(|i| shown.iter().map(|j| entry(*i, *j)).collect()).collect();
     let size = if shown.len() <= MOST_WITH_NUMBERS { 34.0 } else { 20.0 };

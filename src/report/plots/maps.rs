@@ -59,7 +59,7 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         title: "Angle × wavelength".to_owned(),
         caption: caption.trim().to_owned(),
         width: PAGE_WIDTH,
-        columns: if is_mirror { 3 } else { 2 },
+        columns: 3,
         cells: vec![
             cell("measured", measured, readings_scale, label),
             cell("fitted", fitted, readings_scale, label),

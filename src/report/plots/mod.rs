@@ -10,6 +10,7 @@ mod spectra;
 mod support;
 
 use super::chart::Figure;
+use crate::fit::{Fit, Loss, SigmaSource};
 use crate::job::Case;
 
 /// The part of the page where a figure stands.
@@ -44,3 +45,12 @@ pub(crate) const ALL: &[Plot] = &[
     Plot { place: Place::Support, draw: support::draw },
     Plot { place: Place::Convergence, draw: convergence::draw },
 ];
+
+/// What the cost is, as an axis says it. It has no unit.
+fn cost_label(fit: &Fit) -> &'static str {
+    match (fit.settings.loss, fit.goodness.sigma_source) {
+        (Loss::Squares, SigmaSource::Known) => "cost (χ²)",
+        (Loss::Squares, SigmaSource::Estimated) => "cost (weighted squares)",
+        _ => "cost (robust)",
+    }
+}

@@ -1,5 +1,6 @@
 //! Cost over each scanned parameter, with every minimum marked.
 
+use super::cost_label;
 use crate::fit::{Fit, ProfilePoint};
 use crate::job::Case;
 use crate::report::chart::{
@@ -20,12 +21,12 @@ fn figure(fit: &Fit, index: usize, name: &str, points: &[ProfilePoint]) -> Figur
     let values = extent(points.iter().map(|p| p.value).chain(minima.iter().map(|m| m.0)));
     let costs = extent(points.iter().map(|p| p.cost).chain(minima.iter().map(|m| m.1)));
     let y = if costs.0 > 0.0 && costs.1 > 20.0 * costs.0 {
-        Axis::logarithmic("cost", with_room_logarithmic(costs))
+        Axis::logarithmic(cost_label(fit), with_room_logarithmic(costs))
     } else {
-        Axis::linear("cost", with_room(costs))
+        Axis::linear(cost_label(fit), with_room(costs))
     };
     let x_label = match estimate {
-        Some(e) if !e.unit.is_empty() => format!("{} ({})", e.name, e.unit),
+        Some(e) if !e.unit.is_empty() => format!("{}: {} ({})", e.symbol, e.name, e.unit),
         _ => name.to_owned(),
     };
     let look = |open: bool| Look::Marks { colour: if open { VERMILION } else { BLUE }, mark: Mark::Diamond, open };

@@ -5,8 +5,8 @@ use crate::report::angles;
 use crate::report::chart::{
     Axis, Cell, Chart, Figure, Layer, Look, Mark, PAGE_WIDTH, Series, around_zero, extent, from_zero,
 };
-use crate::report::palette::{BLACK, SKY, VERMILION};
-use crate::report::readings::{self, quantity_label};
+use crate::report::palette::{BLACK, BLUE, SKY, VERMILION};
+use crate::report::readings::{self, quantity_label, quantity_note};
 
 const MEASURED: Look = Look::Line { colour: SKY, width: 3.2, dashed: false };
 const FITTED: Look = Look::Line { colour: BLACK, width: 1.3, dashed: false };
@@ -36,7 +36,7 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         let spectrum_chart = Chart {
             x: x(),
             y: Axis::linear(quantity_label(*quantity), from_zero(shown_values)),
-            height: if is_few { 190.0 } else { 105.0 },
+            height: if is_few { 200.0 } else { 120.0 },
             layers: vec![
                 Layer::Series(Series::new("measured", used().map(|r| (r.wavelength_nm, r.measured)), MEASURED)),
                 Layer::Series(Series::new("measured, masked", masked, MASKED)),
@@ -50,28 +50,32 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         let residual_chart = Chart {
             x: x(),
             y: Axis::linear("residual", residuals),
-            height: if is_few { 70.0 } else { 44.0 },
+            height: if is_few { 80.0 } else { 56.0 },
             layers: vec![
                 Layer::Level(0.0),
                 Layer::Series(Series::new(
-                    "residual: model − measured",
+                    "residual",
                     used().map(|r| (r.wavelength_nm, r.residual())),
-                    Look::Line { colour: VERMILION, width: 1.0, dashed: false },
+                    Look::Line { colour: BLUE, width: 1.1, dashed: false },
                 )),
             ],
         };
         Cell { title, charts: vec![spectrum_chart, residual_chart] }
     });
-    let caption = [
+    let has_masked = shown.iter().flat_map(|s| readings::of(s)).any(|r| !r.used);
+    let sentences = [
         selection.text.unwrap_or_default(),
         angles::meaning(spectra.iter().map(|s| &s.geometry)).to_owned(),
-        "Each panel has its own scale of readings; all residual strips share one, in the same unit.".to_owned(),
-    ]
-    .join(" ");
+        quantity_note(*quantity).to_owned(),
+        "Each panel has its own scale of readings. Residuals are model − measured, in the same unit, all on one scale."
+            .to_owned(),
+        if has_masked { "Masked readings beyond a panel's scale are not drawn.".to_owned() } else { String::new() },
+    ];
+    let caption = sentences.iter().filter(|s| !s.is_empty()).cloned().collect::<Vec<_>>().join(" ");
     vec![Figure {
         name: "spectra".to_owned(),
         title: "Measured and fitted spectra".to_owned(),
-        caption: caption.trim().to_owned(),
+        caption,
         width: PAGE_WIDTH,
         columns: if is_few { 2 } else { 3 },
         cells: cells.collect(),

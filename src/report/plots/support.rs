@@ -1,6 +1,6 @@
 //! Prediction error at incidences left out one at a time, with the film and without.
 
-use crate::job::Case;
+use crate::job::{Case, CaseData};
 use crate::report::chart::{
     Axis, Cell, Chart, Figure, Layer, Look, Mark, Series, extent, from_zero, with_room, with_room_logarithmic,
 };
@@ -15,7 +15,9 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let against =
         |values: &[f64]| -> Vec<(f64, f64)> { incidences.iter().copied().zip(values.iter().copied()).collect() };
     let errors = extent(support.with_film.iter().chain(&support.without_film).copied());
-    let y_label = "mean squared error";
+    let has_sigma =
+        matches!(&case.data, CaseData::Spectra { spectra, .. } if spectra.iter().all(|s| s.sigmas.is_some()));
+    let y_label = if has_sigma { "mean squared error (σ²)" } else { "mean squared error (share)" };
     let y = if errors.0 > 0.0 && errors.1 > 20.0 * errors.0 {
         Axis::logarithmic(y_label, with_room_logarithmic(errors))
     } else {
@@ -48,7 +50,10 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     vec![Figure {
         name: "support".to_owned(),
         title: "Prediction at incidences left out one at a time".to_owned(),
-        caption: "The readings at each incidence are predicted by a fit to all the others. Lower is better.".to_owned(),
+        caption: format!(
+            "The readings at each incidence are predicted by a fit to all the others; lower is better. Errors are {}.",
+            if has_sigma { "in units of each reading's σ²" } else { "a share of the mean squared reading there" }
+        ),
         width: 660,
         columns: 1,
         cells: vec![Cell { title: String::new(), charts }],
