@@ -2,22 +2,8 @@
 
 use std::path::Path;
 
-use serde::Serialize;
-
 use super::JobError;
-use crate::measure::{Certainty, Quantity, TableLayout, TableText, guess_layout};
-
-/// Sections of a job that a guess fills.
-#[derive(Serialize)]
-struct Sections {
-    data: Data,
-}
-
-#[derive(Serialize)]
-struct Data {
-    file: String,
-    layout: TableLayout,
-}
+use crate::measure::{Quantity, TableLayout, TableText, guess_layout};
 
 /// Text of a job for this table, to be written to `job_path` (from whose folder the table's path then counts).
 pub fn draft(table: &Path, job_path: &Path) -> Result<String, JobError> {
@@ -25,28 +11,18 @@ pub fn draft(table: &Path, job_path: &Path) -> Result<String, JobError> {
     let name = table.file_name().map_or_else(|| "table".into(), |name| name.to_string_lossy().into_owned());
     let file = relative(table, job_path.parent().unwrap_or(Path::new(".")));
     let (instrument, model) = sections(&guess.layout);
-    let data = toml::to_string(&Sections { data: Data { file, layout: guess.layout } })
-        .map_err(|error| JobError::key("data.layout", error.to_string()))?;
-    let notes: Vec<String> = guess
-        .notes
-        .iter()
-        .map(|note| {
-            let mark = match note.certainty {
-                Certainty::Read => "read",
-                Certainty::Guessed => "guess",
-                Certainty::Missing => "FILL IN",
-            };
-            format!("# {mark}: {}: {}", note.key, note.text)
-        })
-        .collect();
+    let layout =
+        guess.commented_toml("data.layout").map_err(|error| JobError::key("data.layout", error.to_string()))?;
     Ok(format!(
         "# A job for {name}. Look at every line marked `guess` or `FILL IN`, then run `barbule check` on this file.\n\
          # All keys and their meaning stand in data-schema/job.schema.json; `barbule models` lists the models.\n\n\
          title = {}\n\
          about = \"\"  # what was measured, by whom, and how: the report prints it\n\n\
-         {}\n{data}\n{instrument}{model}",
+         [data]\n\
+         file = {}\n\n\
+         {layout}\n{instrument}{model}",
         toml::Value::String(name.clone()),
-        notes.join("\n"),
+        toml::Value::String(file),
     ))
 }
 
@@ -75,7 +51,9 @@ fn sections(layout: &TableLayout) -> (String, &'static str) {
         ),
         TableLayout::Spectra(layout) => {
             let (gain, why) = match layout.quantity {
-                Quantity::Reflectance => ("per-spectrum", "a reflectance against a white standard has no absolute scale"),
+                Quantity::Reflectance => {
+                    ("per-spectrum", "a reflectance against a white standard has no absolute scale")
+                }
                 Quantity::Brdf | Quantity::BsdfCos => ("shared", "one factor for the whole table"),
             };
             (
