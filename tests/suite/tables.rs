@@ -616,19 +616,19 @@ fn guesses_are_written_with_their_reasons() {
     }
     let (teal, _) = guess("wl,bird-1,bird-2\n400,22.5,20\n405,23,21\n");
     let expected = r#"[data.spectra]
-# GUESS: no name speaks of a BRDF; taken against a white standard
+# guess: no name speaks of a BRDF; taken against a white standard
 quantity = "reflectance"
-# GUESS: readings go up to 23, which are percent
+# guess: readings go up to 23, which are percent
 percent = true
 negative = "refuse"
 stride = 1
 replicates = false
 
 [data.spectra.columns.wide]
-# GUESS: "wl" runs from 400 to 405, step 5
+# guess: "wl" runs from 400 to 405, step 5
 wavelength = "wl"
 
-# TO FILL IN: the file does not hold the angles of its 2 spectra: write the light's inclination in place of each nan, and all four angles if the viewer is not in the mirror direction
+# FILL IN: the file does not hold the angles of its 2 spectra: write the light's inclination in place of each nan, and all four angles if the viewer is not in the mirror direction
 [data.spectra.columns.wide.angles.mirror]
 bird-1 = nan
 bird-2 = nan

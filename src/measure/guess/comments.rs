@@ -39,9 +39,9 @@ impl Guess {
 
 fn comment(note: &GuessNote) -> String {
     let mark = match note.certainty {
-        Certainty::Read => "from the file",
-        Certainty::Guessed => "GUESS",
-        Certainty::Missing => "TO FILL IN",
+        Certainty::Read => "read",
+        Certainty::Guessed => "guess",
+        Certainty::Missing => "FILL IN",
     };
     format!("# {mark}: {}\n", note.text)
 }
