@@ -9,7 +9,7 @@
 //! arrives. Without it the model never reflects more than it receives.
 //!
 //! Under a clear coat of index n both directions are refracted into the coat first, R is that of the layers in the coat,
-//! and f = T(θi) T(θo) f_inside / n², T being the coat's Fresnel transmittance. The gloss of the coat's own surface and
+//! and the result is T(θi) T(θo)/n² times the value inside, T being the coat's Fresnel transmittance. The gloss of the coat's own surface and
 //! light that the coat turns back to the layers are left out.
 
 mod base;

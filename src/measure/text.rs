@@ -33,8 +33,7 @@ impl TableText {
     ///
     /// # Errors
     ///
-    /// If there is no such file, or it is no text, or larger than a table can be. Whatever its size, no more of it is
-    /// held than 256 MiB.
+    /// If there is no such file, or it is no text, or larger than 256 MiB, which is found out before it is read.
     pub fn load(path: &Path) -> Result<Self, TableError> {
         let bytes = read_bytes(path).map_err(|problem| TableError::new(path, Place::File, problem))?;
         Self::from_bytes(path, bytes)
@@ -57,7 +56,7 @@ impl TableText {
                 return Err(error(place, TableProblem::NotUtf8 { byte: bytes[valid] }));
             }
         };
-        let content = uniform(&text);
+        let content = uniform(text);
         if content.trim().is_empty() {
             return Err(error(Place::File, TableProblem::Empty));
         }
@@ -276,14 +275,18 @@ const OTHER_FORMATS: [(&[u8], &str); 6] = [
     (b"%PDF", "a PDF document"),
 ];
 
-fn uniform(text: &str) -> String {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut content =
-        if text.contains('\r') { text.replace("\r\n", "\n").replace('\r', "\n") } else { text.to_owned() };
-    if !content.ends_with('\n') {
-        content.push('\n');
+/// Without a byte order mark, and with `\n` at the end of every line, the last one too.
+fn uniform(mut text: String) -> String {
+    if text.starts_with('\u{feff}') {
+        text.remove(0);
     }
-    content
+    if text.contains('\r') {
+        text = text.replace("\r\n", "\n").replace('\r', "\n");
+    }
+    if !text.ends_with('\n') {
+        text.push('\n');
+    }
+    text
 }
 
 fn line_of(before: &[u8]) -> u64 {

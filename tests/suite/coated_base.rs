@@ -30,7 +30,7 @@ fn cortex(thickness_nm: f64) -> Design {
     Design {
         layers: vec![layer("cortex", known("keratin"), thickness_nm)],
         substrate: known("bird_melanin"),
-        clear_coat: None,
+        clear_coat: None, base_knots_nm: Vec::new(),
     }
 }
 
@@ -100,7 +100,7 @@ fn plain_interface_is_fresnel() {
             Complex64::new(1.7, 0.2),
         ),
     ] {
-        let design = Design { layers: Vec::new(), substrate, clear_coat: None };
+        let design = Design { layers: Vec::new(), substrate, clear_coat: None, base_knots_nm: Vec::new() };
         let model = CoatedBase::new(&design, &WAVELENGTHS_NM).unwrap();
         for cosine in [1.0, 0.7, 0.2, 0.01] {
             let mut found = [0.0; 11];
@@ -398,7 +398,7 @@ fn senseless_designs_are_refused() {
         Design { layers: vec![layer("a", known("keratin"), 50.0), layer("a", known("air"), 50.0)], ..cortex(300.0) };
     assert_eq!(refused(&twice, &[500.0]), ModelError::TwoLayers { name: "a".to_owned() });
     let conflict =
-        Design { layers: vec![layer("a", own("wax", 1.4), 50.0)], substrate: own("wax", 1.5), clear_coat: None };
+        Design { layers: vec![layer("a", own("wax", 1.4), 50.0)], substrate: own("wax", 1.5), clear_coat: None, base_knots_nm: Vec::new() };
     assert_eq!(refused(&conflict, &[500.0]), ModelError::TwoMaterials { name: "wax".to_owned() });
     let table = Design {
         layers: Vec::new(),
@@ -407,7 +407,7 @@ fn senseless_designs_are_refused() {
             table: Some(vec![[400.0, 1.5, 0.0], [600.0, 1.45, 0.0]]),
             ..OwnMaterial::default()
         }),
-        clear_coat: None,
+        clear_coat: None, base_knots_nm: Vec::new(),
     };
     let message = refused(&table, &[500.0, 650.0]).to_string();
     for part in ["wax", "400 to 600 nm", "650"] {

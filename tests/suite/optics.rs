@@ -46,7 +46,8 @@ fn fast(front: f64, layers: &[Layer], substrate: Complex64, cos_theta: f64, wave
     let count = layers.len();
     let arrangement = Arrangement::new(count + 1, (0..count).collect(), (0..count).collect(), count);
     let channels = double_wavenumbers(&[wavelength_nm]);
-    let permittivities = indices.iter().map(|index| Permittivity::new(std::iter::once((index.re, index.im)))).collect();
+    let permittivities =
+        indices.iter().map(|index| Permittivity::new(std::iter::once(index.re), std::iter::once(index.im))).collect();
     let thicknesses = layers.iter().map(|layer| layer.thickness_nm).collect();
     let mut reflectance = [0.0];
     LayeredMedium::new(&arrangement, &channels, permittivities, thicknesses).reflectance(
@@ -335,7 +336,10 @@ proptest! {
         let sequence: Vec<usize> = (0..repeats).flat_map(|_| 0..layers.len()).collect();
         let arrangement = Arrangement::new(materials.len(), layer_materials, sequence.clone(), 1);
         let permittivities = (0..materials.len())
-            .map(|m| Permittivity::new(wavelengths.iter().map(|&w| (index(m, w).re, index(m, w).im))))
+            .map(|m| {
+                let indices = wavelengths.iter().map(|&wavelength| index(m, wavelength));
+                Permittivity::new(indices.clone().map(|index| index.re), indices.map(|index| index.im))
+            })
             .collect();
         let wavenumbers = double_wavenumbers(&wavelengths);
         let thicknesses = layers.iter().map(|&(_, d)| d).collect();

@@ -596,6 +596,46 @@ fn guesses_of_units_and_repeats_are_marked() {
     }
 }
 
+/// What `new` writes: every reason stands above its key, and the whole is a layout again.
+#[test]
+fn guesses_are_written_with_their_reasons() {
+    let tables = [
+        "spectrum_id,theta_i,wavelength,R,sd,kept\na,0.5,0.4,0.1,0.01,1\nb,0.5,0.4,0.2,0.01,1\n",
+        "ti;to;wavelength;brdf\n10;20;400;0,1\n",
+        "theta,peak,sd,order\n15,520,1,1\n",
+        "wl,theta15,theta30\n400,20,10\n",
+    ];
+    for table in tables {
+        let (guess, _) = guess(table);
+        let text = guess.commented_toml("data").unwrap();
+        let job: toml::Table = text.parse().unwrap();
+        assert_eq!(job["data"].clone().try_into::<TableLayout>().unwrap(), guess.layout, "{text}");
+        for note in &guess.notes {
+            assert_eq!(text.matches(&note.text).count(), 1, "{}\n{text}", note.text);
+        }
+    }
+    let (teal, _) = guess("wl,bird-1,bird-2\n400,22.5,20\n405,23,21\n");
+    let expected = r#"[data.spectra]
+# GUESS: no name speaks of a BRDF; taken against a white standard
+quantity = "reflectance"
+# GUESS: readings go up to 23, which are percent
+percent = true
+negative = "refuse"
+stride = 1
+replicates = false
+
+[data.spectra.columns.wide]
+# GUESS: "wl" runs from 400 to 405, step 5
+wavelength = "wl"
+
+# TO FILL IN: the file does not hold the angles of its 2 spectra: write the light's inclination in place of each nan, and all four angles if the viewer is not in the mirror direction
+[data.spectra.columns.wide.angles.mirror]
+bird-1 = nan
+bird-2 = nan
+"#;
+    assert_eq!(teal.commented_toml("data").unwrap(), expected);
+}
+
 /// What a job's author gets for a slip in the layout: the line, the key and what it may be.
 #[test]
 fn slips_in_a_layout_name_line_and_key() {
@@ -614,11 +654,16 @@ fn slips_in_a_layout_name_line_and_key() {
 }
 
 #[test]
-fn a_layout_is_written_as_it_is_read() {
+fn a_layout_is_written_as_it_is_read_and_as_its_schema_says() {
+    let schema = serde_json::to_value(schemars::schema_for!(TableLayout)).unwrap();
+    let schema = jsonschema::validator_for(&schema).unwrap();
     for toml in [LONG, FOUR, WIDE, PEAKS] {
         let written = toml::to_string(&layout(toml)).unwrap();
         assert_eq!(layout(&written), layout(toml), "{written}");
+        assert!(schema.is_valid(&serde_json::to_value(layout(toml)).unwrap()), "{written}");
     }
+    let unknown_key = serde_json::json!({ "peaks": { "angles": { "mirror": 1 }, "wavelength": "w", "colour": 1 } });
+    assert!(!schema.is_valid(&unknown_key));
 }
 
 /// Reads damaged tables, and their guesses: an error or a table, never a panic, and a table keeps its promises.

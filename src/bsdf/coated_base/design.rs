@@ -73,7 +73,7 @@ pub struct DesignPeriod {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum MaterialChoice {
-    /// Name of a known material: keratin, bird_melanin, chitin, insect_melanin or air.
+    /// Name of a known material: `keratin`, `bird_melanin`, `chitin`, `insect_melanin` or `air`.
     Known(String),
     /// A material of your own.
     Own(OwnMaterial),

@@ -3,6 +3,7 @@
 //! A guess is a start for a person who then looks at each note. Nothing is taken for granted that the file does not say:
 //! where the viewer stands is a guess, and angles that the file does not hold stay open as NaN, which no reader accepts.
 
+mod comments;
 mod names;
 mod scan;
 
@@ -94,7 +95,7 @@ impl<'a> Guesser<'a> {
         if self.scan.format != TextFormat::default() {
             self.note("text", Certainty::Read, "the file's cells and decimals are written so");
         }
-        if let Some(peak) = self.find(Role::Peak) {
+        if let (Some(peak), None) = (self.find(Role::Peak), self.find(Role::Wavelength)) {
             return Some(TableLayout::Peaks(self.peaks(peak)));
         }
         let (value, angle) = (self.find(Role::Value), self.find(Role::ThetaI));
@@ -143,7 +144,8 @@ impl<'a> Guesser<'a> {
 
     fn wide(&mut self, wavelength: &'a Column) -> SpectraLayout {
         self.wavelength("columns.wide.wavelength", wavelength);
-        let is_spectrum = |column: &&Column| column.name != wavelength.name && !column.name.is_empty();
+        let is_spectrum =
+            |column: &&Column| column.name != wavelength.name && !column.name.is_empty() && column.numbers > 0;
         let spectra: Vec<&Column> = self.scan.columns.iter().filter(is_spectrum).collect();
         let angles: Vec<Option<f64>> = spectra.iter().map(|column| names::angle_in(&column.name)).collect();
         let known = angles.iter().all(Option::is_some);
@@ -200,9 +202,12 @@ impl<'a> Guesser<'a> {
 
     /// The first column of this role that holds numbers; a name may be any text.
     fn find(&self, role: Role) -> Option<&'a Column> {
+        // Two columns with an angle in their names are two spectra; one may be called theta1.
+        let with_angle = |column: &&Column| names::angle_in(&column.name).is_some();
+        let spectra_by_angle = self.scan.columns.iter().filter(with_angle).count() > 1;
         let fits = |column: &&Column| {
-            let angle_of_one_spectrum = role == Role::ThetaI && names::angle_in(&column.name).is_some();
-            names::role(&column.name) == role && (column.numbers > 0 || role == Role::Id) && !angle_of_one_spectrum
+            let spectrum = role == Role::ThetaI && spectra_by_angle && with_angle(column);
+            names::role(&column.name) == role && (column.numbers > 0 || role == Role::Id) && !spectrum
         };
         self.scan.columns.iter().find(fits)
     }
