@@ -42,6 +42,12 @@ pub(crate) fn percent(value: f64, error: Option<f64>) -> Option<String> {
     share.is_finite().then(|| format!("{} %", significant(share, 2)))
 }
 
+/// A correlation with this many decimals, and with more where it would be rounded to ±1 without being so.
+pub(crate) fn correlation(value: f64, decimals: i32) -> String {
+    let needed = (decimals..8).find(|d| value.abs() >= 1.0 || value.abs() < 1.0 - 0.5 * 10f64.powi(-d));
+    to_place(value, -needed.unwrap_or(8))
+}
+
 /// A number to five significant digits without trailing zeros.
 pub(crate) fn plain(value: f64) -> String {
     if !value.is_finite() {
@@ -192,6 +198,14 @@ mod tests {
         ];
         for (value, expected) in cases {
             assert_eq!(plain(value), expected, "{value}");
+        }
+    }
+
+    #[test]
+    fn only_a_full_correlation_is_one() {
+        let cases = [(1.0, "1.00"), (-1.0, "−1.00"), (-0.996, "−0.996"), (0.99996, "0.99996"), (0.123, "0.12")];
+        for (value, expected) in cases {
+            assert_eq!(correlation(value, 2), expected, "{value}");
         }
     }
 

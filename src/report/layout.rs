@@ -18,6 +18,8 @@ const TICK_ROW_HEIGHT: f64 = 18.0;
 const LABEL_ROW_HEIGHT: f64 = 18.0;
 const BAR_HEIGHT: f64 = 10.0;
 const GAP: f64 = 10.0;
+/// Right of a frame, for the half of the last tick's label that stands beyond it.
+const RIGHT_ROOM: f64 = 14.0;
 const MARK_RADIUS: f64 = 3.4;
 const LEGEND_SAMPLE: f64 = 26.0;
 
@@ -55,7 +57,7 @@ pub(crate) fn drawing(figure: &Figure) -> Drawing {
     let shares_rows = figure.cells.len() <= columns && have_same_bands(&figure.cells);
     let lead = |column: usize| match column {
         0 => LABEL_ROW_HEIGHT + tick_width,
-        _ if shares_rows => TICK_SIZE,
+        _ if shares_rows => 0.0,
         _ => tick_width,
     };
     let leads: f64 = (0..columns).map(lead).sum();
@@ -144,7 +146,7 @@ struct CellPlace {
 /// Draws a cell and returns its height.
 fn lay_cell(cell: &Cell, place: CellPlace, shapes: &mut Vec<Shape>) -> f64 {
     let left = place.left + place.lead;
-    let right = left + place.frame_width - 6.0;
+    let right = left + place.frame_width - RIGHT_ROOM;
     let mut top = place.top;
     if !cell.title.is_empty() {
         let title = shortened(&cell.title, CELL_TITLE_SIZE, true, right - left);
@@ -192,7 +194,8 @@ fn lay_chart(chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
             }
         }
     }
-    let mut notes: Vec<(f64, f64, f64)> = Vec::new();
+    // Boxes that a note must not cover: middle, half width, half height.
+    let mut taken = marker_boxes(chart, frame);
     for layer in &chart.layers {
         match layer {
             Layer::Series(series) => lay_series(series, chart, frame, shapes),
@@ -210,11 +213,13 @@ fn lay_chart(chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
             Layer::Note { x, y, text: note } => {
                 let (Some(x), Some(y)) = (place_x(&chart.x, *x, frame), place_y(&chart.y, *y, frame)) else { continue };
                 let half = text_width(note, TICK_SIZE, false) / 2.0;
-                let x = x.clamp(frame.left + half, (frame.right - half).max(frame.left + half));
-                let y = if y - 12.0 > frame.top + 6.0 { y - 12.0 } else { y + 13.0 };
-                let covers = |(ox, oy, o): &(f64, f64, f64)| (x - ox).abs() < half + o + 4.0 && (y - oy).abs() < 13.0;
-                if !notes.iter().any(covers) {
-                    notes.push((x, y, half));
+                let x = x.clamp(frame.left + half + 3.0, frame.right - half);
+                let is_free = |y: &f64| {
+                    (frame.top + 5.0..frame.bottom - 5.0).contains(y)
+                        && !taken.iter().any(|((tx, ty), w, h)| (x - tx).abs() < half + w && (y - ty).abs() < 6.0 + h)
+                };
+                if let Some(y) = [y - 12.0, y + 12.0].into_iter().find(is_free) {
+                    taken.push(((x, y), half + 3.0, 6.0));
                     shapes.push(text(note.clone(), (x, y), TICK_SIZE, Align::Middle).into());
                 }
             }
@@ -222,6 +227,17 @@ fn lay_chart(chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
     }
     let corners = [(frame.left, frame.top), (frame.left, frame.bottom), (frame.right, frame.bottom)];
     shapes.push(line(&corners, INK, 1.0));
+}
+
+fn marker_boxes(chart: &Chart, frame: Frame) -> Vec<((f64, f64), f64, f64)> {
+    let marked = chart.layers.iter().filter_map(|layer| match layer {
+        Layer::Series(series) if !matches!(series.look, Look::Line { .. }) => Some(&series.points),
+        _ => None,
+    });
+    marked
+        .flatten()
+        .filter_map(|p| Some(((x_of(&chart.x, p.x, frame)?, y_of(&chart.y, p.y, frame)?), MARK_RADIUS, MARK_RADIUS)))
+        .collect()
 }
 
 fn lay_series(series: &Series, chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
@@ -288,7 +304,7 @@ fn lay_map(map: &Map, chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
                 match (colour, row[column]) {
                     (Some(colour), Some(value)) if map.with_numbers => {
                         let ink = if is_light(colour) { BLACK } else { WHITE };
-                        let number = crate::number::to_place(value, -2);
+                        let number = crate::number::correlation(value, 2);
                         let at = ((left + right) / 2.0, (top + bottom) / 2.0);
                         shapes.push(text(number, at, TICK_SIZE, Align::Middle).coloured(ink));
                     }

@@ -143,7 +143,10 @@ pub(crate) fn of(outcome: &Outcome, has_swatches: bool) -> Methods {
 fn model_text(note: &ModelNote, bibliography: &mut Bibliography) -> String {
     let mut text = note.text.trim().to_owned();
     let mut unnamed = Vec::new();
-    for work in &note.references {
+    // Numbers rise through the text: works in the order in which it names them, the others last.
+    let mut works: Vec<&Reference> = note.references.iter().collect();
+    works.sort_by_key(|work| note.text.find(&work.key).unwrap_or(usize::MAX));
+    for work in works {
         let number = bibliography.number(work);
         if work.key.is_empty() || !text.contains(&work.key) {
             unnamed.push(number.to_string());

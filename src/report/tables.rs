@@ -13,6 +13,8 @@ pub(crate) const STRONG_CORRELATION: f64 = 0.9;
 const RIVAL_SHARE: f64 = 0.05;
 /// Most parameters that the table of minima has columns for.
 const MOST_MINIMUM_COLUMNS: usize = 5;
+/// Most minima that are listed at once and numbered in plots; the others are folded away.
+pub(crate) const SHOWN_MINIMA: usize = 12;
 /// Parameters named in the comparison of cases.
 const MAIN_PARAMETERS: usize = 4;
 
@@ -36,9 +38,10 @@ pub(crate) struct ParameterRow {
     pub(crate) deviation: String,
 }
 
-/// The parameter table, with the truth beside the fit where it is known.
-pub(crate) fn parameters(fit: &Fit, truth: Option<&Truth>) -> Vec<ParameterRow> {
-    fit.estimates.iter().map(|e| parameter(e, truth.and_then(|t| t.values.get(&e.name).copied()))).collect()
+/// The parameters that are held fixed, or all the others, with the truth beside the fit where it is known.
+pub(crate) fn parameters(fit: &Fit, truth: Option<&Truth>, are_fixed: bool) -> Vec<ParameterRow> {
+    let chosen = fit.estimates.iter().filter(|e| (e.role == "fixed") == are_fixed);
+    chosen.map(|e| parameter(e, truth.and_then(|t| t.values.get(&e.name).copied()))).collect()
 }
 
 fn parameter(e: &Estimate, truth: Option<f64>) -> ParameterRow {
@@ -107,7 +110,9 @@ pub(crate) fn main_parameters(fit: &Fit) -> Vec<String> {
 /// The table of minima.
 pub(crate) struct Minima {
     pub(crate) parameters: Vec<String>,
+    /// The best, and the others.
     pub(crate) rows: Vec<MinimumRow>,
+    pub(crate) further: Vec<MinimumRow>,
     /// How many parameters have no column.
     pub(crate) left_out: usize,
     pub(crate) rms_label: &'static str,
@@ -152,9 +157,12 @@ pub(crate) fn minima(fit: &Fit) -> Minima {
         hits: m.hits,
         stop: stop_words(m.stop),
     };
+    let mut rows: Vec<MinimumRow> = fit.minima.iter().enumerate().map(row).collect();
+    let further = rows.split_off(rows.len().min(SHOWN_MINIMA));
     Minima {
         parameters: columns.iter().map(header).collect(),
-        rows: fit.minima.iter().enumerate().map(row).collect(),
+        rows,
+        further,
         left_out,
         rms_label: match fit.goodness.sigma_source {
             SigmaSource::Known => "rms (σ)",
@@ -215,7 +223,7 @@ pub(crate) fn strong_correlations(fit: &Fit) -> Vec<String> {
             if let Some(r) = fit.correlations.get(i).and_then(|row| row.get(j)).copied().flatten()
                 && r.abs() >= STRONG_CORRELATION
             {
-                pairs.push((r, format!("{one} and {other}: {}", crate::number::to_place(r, -3))));
+                pairs.push((r, format!("{one} and {other}: {}", crate::number::correlation(r, 3))));
             }
         }
     }

@@ -1,14 +1,18 @@
 //! The report as a reader gets it: a folder with a page, plots and tables.
 
+#![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
+
 mod fixtures;
 mod markup;
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use approx::assert_relative_eq;
 use barbule::job::{CaseData, Outcome};
+use barbule::measure::colour::Swatch;
 use barbule::report::{ReportError, write_report};
 
 /// Writes a report where it can be looked at afterwards: `target/tmp/report/<test>/<name>`.
@@ -22,8 +26,23 @@ fn written(test: &str, outcome: &Outcome) -> PathBuf {
     folder
 }
 
-fn all_fixtures() -> [Outcome; 5] {
-    [fixtures::film(), fixtures::synthetic(), fixtures::paint(), fixtures::peaks(), fixtures::awkward()]
+/// The report of each fixture, written once for all tests that only read it, and left in `target/tmp/report/fixtures` to
+/// be looked at.
+fn all_reports() -> &'static [(Outcome, PathBuf)] {
+    static REPORTS: LazyLock<Vec<(Outcome, PathBuf)>> = LazyLock::new(|| {
+        [fixtures::film(), fixtures::synthetic(), fixtures::paint(), fixtures::peaks(), fixtures::awkward()]
+            .into_iter()
+            .map(|outcome| {
+                let folder = written("fixtures", &outcome);
+                (outcome, folder)
+            })
+            .collect()
+    });
+    &REPORTS
+}
+
+fn report(name: &str) -> &'static (Outcome, PathBuf) {
+    all_reports().iter().find(|(outcome, _)| outcome.name == name).unwrap()
 }
 
 /// Every file of a folder by its path inside it.
@@ -59,9 +78,8 @@ fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
 
 #[test]
 fn every_page_is_well_formed_and_fetches_nothing() {
-    for outcome in all_fixtures() {
-        let folder = written("well-formed", &outcome);
-        let page = page(&folder);
+    for (outcome, folder) in all_reports() {
+        let page = page(folder);
         markup::assert_well_formed(&page);
         for word in ["<script", "<link", "<img", "@import", "url(", " src="] {
             assert!(!page.contains(word), "{}: the page holds {word}", outcome.name);
@@ -77,8 +95,8 @@ fn every_page_is_well_formed_and_fetches_nothing() {
 
 #[test]
 fn the_answer_comes_first() {
-    let outcome = fixtures::film();
-    let page = page(&written("answer", &outcome));
+    let (outcome, folder) = report("film");
+    let page = page(folder);
     let body = page.split_once("<body>").unwrap().1;
     let texts = markup::texts(body);
     assert_eq!(texts[0], outcome.title);
@@ -87,15 +105,15 @@ fn the_answer_comes_first() {
 
 #[test]
 fn markup_in_names_is_shown_and_not_obeyed() {
-    let folder = written("escaped", &fixtures::awkward());
-    let page = page(&folder);
+    let (_, folder) = report("awkward");
+    let page = page(folder);
     assert!(!page.contains("<script"));
     let shown = markup::texts(&page);
     assert!(
         shown.iter().any(|t| t.contains("<script>alert(\"x\")</script> & 'co'")),
         "the name itself must be legible"
     );
-    for (name, bytes) in files(&folder) {
+    for (name, bytes) in files(folder) {
         if name.ends_with(".svg") {
             markup::assert_well_formed(std::str::from_utf8(&bytes).unwrap());
         }
@@ -112,8 +130,8 @@ fn an_outcome_without_cases_still_gives_its_answer() {
 
 #[test]
 fn every_plot_has_its_picture_and_its_numbers() {
-    for outcome in all_fixtures() {
-        let found = files(&written("complete", &outcome));
+    for (outcome, folder) in all_reports() {
+        let found = files(folder);
         let svgs: Vec<&String> = found.keys().filter(|n| n.ends_with(".svg")).collect();
         assert!(!svgs.is_empty(), "{}: no plots", outcome.name);
         for svg in svgs {
@@ -130,8 +148,7 @@ const WRITTEN_DIGITS: f64 = 1e-6;
 
 #[test]
 fn tables_hold_the_plotted_spectra() {
-    let outcome = fixtures::film();
-    let folder = written("spectra", &outcome);
+    let (outcome, folder) = report("film");
     let CaseData::Spectra { spectra, .. } = &outcome.cases[0].data else { panic!("expected spectra") };
     let readings = table(&folder.join("curves/spectra.csv"));
     let residuals = table(&folder.join("curves/spectra-2.csv"));
@@ -159,8 +176,7 @@ fn tables_hold_the_plotted_spectra() {
 
 #[test]
 fn tables_hold_the_plotted_peaks_minima_and_correlations() {
-    let outcome = fixtures::peaks();
-    let folder = written("peaks", &outcome);
+    let (_, folder) = report("peaks");
     let peaks = table(&folder.join("curves/case-1-peaks.csv"));
     let of = |curve: &str| -> Vec<_> { peaks.iter().filter(|r| r["curve"] == curve).collect() };
     assert_eq!(of("measured, fitted").len(), 9);
@@ -169,8 +185,7 @@ fn tables_hold_the_plotted_peaks_minima_and_correlations() {
     assert_relative_eq!(number(left_out[2], "peak wavelength (nm)"), 430.2);
     assert_relative_eq!(number(left_out[2], "standard error"), 1.0);
 
-    let outcome = fixtures::film();
-    let folder = written("minima", &outcome);
+    let (_, folder) = report("film");
     let profile = table(&folder.join("curves/profile.csv"));
     assert_eq!(profile.iter().filter(|r| r["curve"] == "other minima").count(), 5);
     assert_eq!(profile.iter().filter(|r| r["curve"] == "lowest cost found").count(), 260);
@@ -182,8 +197,8 @@ fn tables_hold_the_plotted_peaks_minima_and_correlations() {
 
 #[test]
 fn a_large_table_is_shown_by_a_choice_that_is_named() {
-    let folder = written("large", &fixtures::paint());
-    let text = markup::texts(&page(&folder)).join(" ");
+    let (_, folder) = report("paint");
+    let text = markup::texts(&page(folder)).join(" ");
     assert!(text.contains("Of 240 spectra 12 are shown: at each of the 6 incidences of the light"), "{text}");
     assert!(text.contains("Of 240 spectra, 60 evenly spread"));
     let rows = table(&folder.join("curves/spectra.csv"));
@@ -194,11 +209,11 @@ fn a_large_table_is_shown_by_a_choice_that_is_named() {
 
 #[test]
 fn synthetic_readings_are_called_so_everywhere() {
-    let folder = written("synthetic", &fixtures::synthetic());
-    let page = page(&folder);
+    let (_, folder) = report("synthetic");
+    let page = page(folder);
     let text = markup::texts(&page).join(" ");
     assert!(text.contains("SYNTHETIC The readings were not measured."));
-    for (name, bytes) in files(&folder) {
+    for (name, bytes) in files(folder) {
         if name.ends_with(".svg") {
             let svg = String::from_utf8(bytes).unwrap();
             assert!(
@@ -214,15 +229,15 @@ fn synthetic_readings_are_called_so_everywhere() {
 
 #[test]
 fn the_peaks_figure_has_names_units_and_a_legend() {
-    let folder = written("labels", &fixtures::peaks());
+    let (_, folder) = report("peaks");
     let svg = fs::read_to_string(folder.join("plots/case-1-peaks.svg")).unwrap();
     insta::assert_snapshot!(markup::texts(&svg).join(" | "), @"Peak wavelength against angle · law, start angle 15° | fitted curve | measured, fitted | measured, left out of the fit | 440 | 460 | 480 | 500 | 520 | peak wavelength (nm) | −10 | 0 | 10 | residual (nm) | 15 | 20 | 25 | 30 | 35 | 40 | 45 | 50 | 55 | 60 | 65 | 70 | inclination of the light θᵢ (°)");
 }
 
 #[test]
 fn no_label_covers_another_or_leaves_its_figure() {
-    for outcome in all_fixtures() {
-        for (name, bytes) in files(&written("overlaps", &outcome)) {
+    for (_, folder) in all_reports() {
+        for (name, bytes) in files(folder) {
             if name.ends_with(".svg") {
                 markup::assert_labels_apart(&name, std::str::from_utf8(&bytes).unwrap());
             }
@@ -232,8 +247,8 @@ fn no_label_covers_another_or_leaves_its_figure() {
 
 #[test]
 fn pictures_decode_and_show_something() {
-    for outcome in all_fixtures() {
-        let found = files(&written("pictures", &outcome));
+    for (outcome, folder) in all_reports() {
+        let found = files(folder);
         for (name, bytes) in found.iter().filter(|(name, _)| name.ends_with(".png")) {
             let picture = image::load_from_memory(bytes).unwrap().to_rgb8();
             let inked = picture.pixels().filter(|p| p.0 != [255; 3]).count();
@@ -249,11 +264,11 @@ fn pictures_decode_and_show_something() {
 
 #[test]
 fn the_same_outcome_gives_the_same_bytes() {
-    for outcome in all_fixtures() {
-        let once = files(&written("once", &outcome));
-        let folder = written("again", &outcome);
+    for (outcome, folder) in all_reports() {
+        let once = files(folder);
+        let folder = written("again", outcome);
         // Over its own files, too: and nothing temporary stays behind.
-        write_report(&outcome, &folder).unwrap();
+        write_report(outcome, &folder).unwrap();
         let again = files(&folder);
         assert_eq!(once.keys().collect::<Vec<_>>(), again.keys().collect::<Vec<_>>());
         for (name, bytes) in &once {
@@ -264,8 +279,8 @@ fn the_same_outcome_gives_the_same_bytes() {
 
 #[test]
 fn a_report_stays_small() {
-    for outcome in all_fixtures() {
-        let found = files(&written("size", &outcome));
+    for (outcome, folder) in all_reports() {
+        let found = files(folder);
         let total: usize = found.values().map(Vec::len).sum();
         // A page that a mail takes, and a folder of which a repository can keep a few.
         assert!(found["index.html"].len() < 700_000, "{}: page of {} bytes", outcome.name, found["index.html"].len());
@@ -281,4 +296,18 @@ fn a_folder_that_cannot_be_made_is_named() {
     assert!(matches!(error, ReportError::Write { .. }));
     let text = error.to_string();
     assert!(text.contains("report-blocked") && text.contains("Check that"), "{text}");
+}
+
+#[test]
+fn swatches_show_measured_and_fitted_with_their_difference() {
+    let (outcome, folder) = report("film");
+    let CaseData::Spectra { spectra, .. } = &outcome.cases[0].data else { panic!("expected spectra") };
+    let seen = |values: &[f64]| Swatch::new(&spectra[0].wavelengths_nm, values).unwrap();
+    let (measured, fitted) = (seen(&spectra[0].measured), seen(&spectra[0].model));
+    let page = page(folder);
+    for swatch in [&measured, &fitted] {
+        assert!(page.contains(&format!("background:{}", swatch.hex)), "no swatch {}", swatch.hex);
+    }
+    let difference = format!("<td class=\"number\">{:.1}</td>", measured.lab.delta_e_2000(fitted.lab));
+    assert!(page.contains(&difference), "no difference {difference}");
 }

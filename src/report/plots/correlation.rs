@@ -31,7 +31,7 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         name: "correlations".to_owned(),
         title: "Correlations of the free parameters".to_owned(),
         caption: caption.trim().to_owned(),
-        width: if shown.len() > 8 { PAGE_WIDTH } else { 560 },
+        width: (420 + 48 * u32::try_from(shown.len()).unwrap_or(0)).min(PAGE_WIDTH),
         columns: 1,
         cells: vec![Cell {
             title: String::new(),

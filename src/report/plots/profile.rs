@@ -7,6 +7,7 @@ use crate::report::chart::{
     Axis, Cell, Chart, Figure, Layer, Look, Mark, PAGE_WIDTH, Series, extent, with_room, with_room_logarithmic,
 };
 use crate::report::palette::{BLUE, GREY, VERMILION};
+use crate::report::tables::SHOWN_MINIMA;
 
 pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let drawn = case.fit.profiles.iter().filter(|(_, points)| points.len() > 1);
@@ -36,13 +37,20 @@ fn figure(fit: &Fit, index: usize, name: &str, points: &[ProfilePoint]) -> Figur
         Layer::Series(Series::new("other minima", minima.iter().skip(1).copied(), look(true))),
         Layer::Series(Series::new("best minimum", minima.first().copied(), look(false))),
     ];
-    layers.extend(minima.iter().enumerate().map(|(i, (x, y))| Layer::Note { x: *x, y: *y, text: (i + 1).to_string() }));
+    layers.extend(minima.iter().take(SHOWN_MINIMA).enumerate().map(|(i, (x, y))| Layer::Note {
+        x: *x,
+        y: *y,
+        text: (i + 1).to_string(),
+    }));
     Figure {
         name: if index == 0 { "profile".to_owned() } else { format!("profile-{}", index + 1) },
-        title: format!("Cost over {name}"),
+        title: match estimate {
+            Some(e) => format!("Cost over {} ({name})", e.symbol),
+            None => format!("Cost over {name}"),
+        },
         caption:
             "Lowest cost with this parameter held, from the scan before the fit; diamonds are the minima that the \
-                  fit found, numbered as in the table. A minimum may lie below the curve: the scan is coarse."
+                  fit found, the best of them numbered as in the table. A minimum may lie below the curve: the scan is coarse."
                 .to_owned(),
         width: PAGE_WIDTH,
         columns: 1,
