@@ -1,8 +1,8 @@
 //! The answer in a sentence or two: value ± error, its rivals, what stays open.
 
-use super::outcome::{Case, Outcome};
+use super::outcome::{Case, CaseData, Outcome, ThicknessOrder};
 use crate::fit::{Bound, Estimate, Fit, StopReason};
-use crate::number::with_error;
+use crate::number::{minus, with_error};
 
 /// A rival minimum with more than this share of the best one's weight is named.
 const RIVAL_SHARE: f64 = 0.05;
@@ -16,15 +16,13 @@ pub(super) fn job_answer(outcome: &Outcome) -> String {
     if outcome.synthetic.is_some() {
         sentences.push("Synthetic readings, made from known values.".to_owned());
     }
-    for (index, case) in outcome.cases.iter().enumerate() {
-        if outcome.cases.len() == 1 {
-            sentences.push(case.answer.clone());
-        } else if index == 0 {
-            sentences.push(format!("{}: {}", case.name, case.answer));
-        } else {
-            sentences.push(format!("{}: {}", case.name, main_values(&case.fit)));
-        }
-    }
+    let (main, others) = match outcome.cases.as_slice() {
+        [] => return String::new(),
+        [main, others @ ..] => (main, others),
+    };
+    let assumed = if others.is_empty() { String::new() } else { format!("Assuming {}: ", main.name) };
+    sentences.push(format!("{assumed}{}", main.answer));
+    sentences.extend(others.iter().map(|case| format!("Assuming {}: {}", case.name, values_sentence(case))));
     sentences.join(" ")
 }
 
@@ -40,14 +38,11 @@ pub(super) fn case_answer(case: &Case) -> String {
         };
         sentences.push(verdict.to_owned());
     }
-    sentences.push(main_values(fit));
-    if case.orders.len() > 1 {
-        let orders: Vec<String> = case.orders.iter().map(|order| format!("{:.0}", order.thickness_nm)).collect();
-        sentences
-            .push(format!("Peaks alone do not give the order of interference: d may be any of {} nm.", list(&orders)));
-    } else {
+    sentences.push(values_sentence(case));
+    if case.orders.len() < 2 {
         sentences.extend(rivals(fit));
     }
+    sentences.extend(held_out(case));
     if !fit.open_directions.is_empty() {
         let open: Vec<&str> = fit.open_directions.iter().map(|direction| direction.text.as_str()).collect();
         sentences.push(format!("The data leave open: {}.", open.join("; ")));
@@ -60,6 +55,39 @@ pub(super) fn case_answer(case: &Case) -> String {
         StopReason::Cancelled => sentences.push("The fit was stopped early; this is the best so far.".into()),
     }
     sentences.join(" ")
+}
+
+/// The fitted values, or every order's where the readings do not tell them apart.
+fn values_sentence(case: &Case) -> String {
+    let [first, .., last] = case.orders.as_slice() else { return main_values(&case.fit) };
+    let text = |order: &ThicknessOrder| with_error(order.thickness_nm, order.standard_error_nm);
+    // The law gives all orders one index; where a full model does not, the range says so.
+    let index = if (first.index - last.index).abs() < first.index_standard_error.unwrap_or(0.0) {
+        with_error(first.index, first.index_standard_error)
+    } else {
+        format!("{:.3} to {:.3}", first.index.min(last.index), first.index.max(last.index))
+    };
+    let thicknesses: Vec<String> = case.orders.iter().map(text).collect();
+    format!(
+        "n = {index}; peaks alone do not give the order of interference, so that the thickness is one of {} nm (orders {} to {}).",
+        thicknesses.join(", "),
+        first.order,
+        last.order
+    )
+}
+
+/// How well peaks that the fit did not see are predicted.
+fn held_out(case: &Case) -> Option<String> {
+    let CaseData::Peaks { peaks, .. } = &case.data else { return None };
+    let errors: Vec<String> = peaks
+        .iter()
+        .filter(|peak| !peak.fitted)
+        .map(|peak| {
+            peak.model_nm.map_or_else(|| "no peak".into(), |nm| minus(&format!("{:+.1}", peak.measured_nm - nm)))
+        })
+        .collect();
+    let what = if errors.len() == 1 { "peak that was held out lies" } else { "peaks that were held out lie" };
+    (!errors.is_empty()).then(|| format!("The {what} {} nm from the prediction.", list(&errors)))
 }
 
 /// The physical parameters first, the instrument's last; a few of them.
