@@ -3,6 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, SVD};
 
 use super::differences::{Accuracy, Bounds, Differences};
+use super::least_squares::FULL;
 use super::objective::Objective;
 use super::outcome::Bound;
 use super::step::LinearModel;
@@ -95,7 +96,7 @@ impl Curvature {
     /// The fall of the cost that a full step inside the bounds promises, as a share of the cost per row.
     pub(super) fn promise(&self, bounds: &Bounds, free: &[f64], cost: f64) -> f64 {
         let held: Vec<bool> = (0..free.len()).map(|j| bounds.keeps(j, free[j], self.gradient[j])).collect();
-        let step = self.model.step(free, bounds, &held, &vec![1.0; free.len()], 0.0);
+        let step = self.model.step(free, bounds, &held, &self.model.lengths(), FULL);
         #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
         let rows = self.rows.len() as f64;
         if cost > 0.0 { step.predicted / cost * rows } else { 0.0 }

@@ -63,6 +63,8 @@ pub(super) enum Finish {
 
 /// λ at the beginning: nearly Gauss–Newton, and soon raised where that is too bold.
 const FIRST_DAMPING: f64 = 1e-4;
+/// λ of a full step: nothing to what the readings determine, and enough to leave alone what they do not.
+pub(super) const FULL: f64 = 1e-14;
 /// Beyond this λ a step is lost in rounding.
 const LAST_DAMPING: f64 = 1e24;
 /// Promise, per row, below which travelling ends.
@@ -171,7 +173,7 @@ impl<'a> LeastSquares<'a> {
         self.limit_relative_change(objective, free, *cost);
         let gradient = model.gradient();
         let held: Vec<bool> = (0..free.len()).map(|j| self.bounds.keeps(j, free[j], gradient[j])).collect();
-        let full = model.step(free, &self.bounds, &held, &self.scale, 0.0);
+        let full = model.step(free, &self.bounds, &held, &self.scale, FULL);
         #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
         let promise = full.predicted / *cost * self.rows.len() as f64;
         if *cost == 0.0 || held.iter().all(|&held| held) {

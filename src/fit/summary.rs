@@ -338,7 +338,8 @@ fn describe(inner: &[usize], direction: &[f64], names: &[String], relative: f64)
         .filter(|(_, share)| share.abs() > 0.1)
         .map(|(&j, &share)| (names[j].clone(), share))
         .collect();
-    shares.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    // Shares that are equal but for rounding keep the order of the parameters.
+    shares.sort_by(|a, b| (1e6 * b.1.abs()).round().total_cmp(&(1e6 * a.1.abs()).round()));
     if shares.first().is_some_and(|first| first.1 < 0.0) {
         shares.iter_mut().for_each(|share| share.1 = -share.1);
     }
