@@ -17,7 +17,6 @@ use super::local::{LocalFit, least_squares};
 use super::minima::{Found, same};
 use super::objective::{Objective, Point};
 use super::outcome::{Settings, Solver, StopReason};
-use super::residuals::Residuals;
 use super::smooth::{Method, bound_free, swarm};
 use super::starts::spread;
 
@@ -98,8 +97,9 @@ where
 fn by_least_squares(objective: &Objective<'_>, pattern: &Pattern, settings: &Settings) -> Survey {
     let bounds = all_bounds(objective);
     let coarse = if settings.starts > 1 { objective.residuals.coarse() } else { None };
-    let coarse: Option<&dyn Residuals> = coarse.as_deref();
-    let screen = coarse.map(|residuals| objective.on(residuals));
+    let screen = coarse.as_deref().map(|residuals| objective.on(residuals));
+    // Too few rows would make minima where there are none.
+    let screen = screen.filter(|screen| screen.rows() >= 3 * objective.mapping.free.len());
     let screen_pattern = screen.as_ref().map(|screen| Pattern::new(screen, false));
     let (screening, screening_pattern) = match (&screen, &screen_pattern) {
         (Some(screen), Some(pattern)) => (screen, pattern),
@@ -115,7 +115,7 @@ fn by_least_squares(objective: &Objective<'_>, pattern: &Pattern, settings: &Set
         }
     }
 
-    let iterations = settings.max_iterations.min(if coarse.is_some() { SCREENING } else { u64::MAX });
+    let iterations = settings.max_iterations.min(if screen.is_some() { SCREENING } else { u64::MAX });
     let run = |start: &Vec<f64>| {
         let finish = Finish::Travelled(1e-3);
         least_squares(screening, Differences::new(screening_pattern), &bounds, start, finish, iterations)
@@ -127,7 +127,7 @@ fn by_least_squares(objective: &Objective<'_>, pattern: &Pattern, settings: &Set
     let lowest = candidates.first().map_or(f64::INFINITY, |candidate| candidate.cost);
     let finish = |candidate: &Found| {
         // What weighs nothing on the coarse problem is listed, but need not be known to the last digit.
-        let (promise, iterations) = if coarse.is_none() || matters(screening, lowest, candidate) {
+        let (promise, iterations) = if screen.is_none() || matters(screening, lowest, candidate) {
             (1e-6, settings.max_iterations)
         } else {
             (1e-2, settings.max_iterations.min(LISTING))

@@ -1,4 +1,6 @@
 //! The fit engine on problems whose answer is known otherwise.
+#![expect(clippy::unwrap_used, reason = "a helper of a test fails by panicking")]
+#![expect(clippy::float_cmp, reason = "an active bound is met exactly")]
 
 use std::f64::consts::PI;
 use std::sync::atomic::AtomicBool;
@@ -10,6 +12,8 @@ use barbule::parameter::{Parameter, Spread};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+/// ψ of a loss.
+type Slope = fn(f64) -> f64;
 type Evaluate<'a> = Box<dyn Fn(&[f64], &mut [f64]) + Sync + 'a>;
 
 /// A problem from a closure.
@@ -119,7 +123,7 @@ impl Residuals for Film {
     }
 
     fn coarse(&self) -> Option<Box<dyn Residuals + '_>> {
-        let pick = |k: &usize| k % 13 == 0;
+        let pick = |k: &usize| k.is_multiple_of(13);
         let chosen: Vec<usize> = (0..self.readings.len()).filter(pick).collect();
         Some(Box::new(Self {
             parameters: self.parameters.clone(),
@@ -358,7 +362,7 @@ fn robust_losses_resist_an_outlier_as_published() {
         }),
     };
     // ψ of each loss, so that Σψ(m − y) = 0 can be solved by bisection.
-    let cases: [(Loss, fn(f64) -> f64); 3] = [
+    let cases: [(Loss, Slope); 3] = [
         (Loss::SoftL1, |u| u / (1.0 + u * u).sqrt()),
         (Loss::Huber, |u| u.clamp(-1.0, 1.0)),
         (Loss::Cauchy, |u| u / (1.0 + u * u)),
