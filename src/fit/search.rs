@@ -25,6 +25,8 @@ const MOST_NODES: usize = 2000;
 /// Nodes of one scan that hand their values on from one to the next; the same for any number of threads.
 const CHUNK: usize = 8;
 
+/// Most iterations at one node of a scan.
+const NODE: u64 = 8;
 /// Most iterations of a start on the coarse problem.
 const SCREENING: u64 = 30;
 /// Most iterations on the full problem of a minimum that weighs nothing.
@@ -227,19 +229,20 @@ fn profile(objective: &Objective<'_>, pattern: &Pattern, bounds: &Bounds, positi
     #[expect(clippy::cast_precision_loss, reason = "a number of nodes is small")]
     let node = |k: usize| lower + (upper - lower) * (k as f64 / (nodes - 1) as f64);
     let chunks: Vec<usize> = (0..nodes).step_by(CHUNK).collect();
+    // Each node begins where the last one ended, and anew: a chain alone would carry one wrong turn on to its end.
     let run = |&first: &usize| {
-        let mut start = objective.mapping.start();
-        let mut points = Vec::with_capacity(CHUNK);
+        let fresh = objective.mapping.start();
+        let mut points: Vec<Point> = Vec::with_capacity(CHUNK);
         for k in first..(first + CHUNK).min(nodes) {
-            start[position] = node(k);
             let mut held = bounds.clone();
             (held.lower[position], held.upper[position]) = (node(k), node(k));
-            let (finish, iterations) = (Finish::Travelled(1e-2), if k == first { 20 } else { 6 });
-            let end = least_squares(objective, Differences::new(pattern), &held, &start, finish, iterations);
-            if let Some(end) = end {
-                start.clone_from(&end.free);
-                points.push(Point { free: end.free, cost: end.cost });
-            }
+            let last = points.last().map(|point| point.free.clone());
+            let ends = last.into_iter().chain([fresh.clone()]).filter_map(|mut start| {
+                start[position] = node(k);
+                least_squares(objective, Differences::new(pattern), &held, &start, Finish::Travelled(1e-2), NODE)
+            });
+            let lowest = ends.min_by(|a, b| a.cost.total_cmp(&b.cost));
+            points.extend(lowest.map(|end| Point { free: end.free, cost: end.cost }));
         }
         points
     };
