@@ -11,6 +11,9 @@ use super::search::Survey;
 use super::statistics::{central_95, lag_one, one_sided_95};
 use super::warnings::warnings;
 
+/// A square matrix over the free parameters, with holes where there is no number.
+type Matrix = Vec<Vec<Option<f64>>>;
+
 /// Turns a finished survey into the result.
 pub(super) fn summarise(
     objective: &Objective<'_>,
@@ -99,7 +102,7 @@ fn rows(objective: &Objective<'_>, free: &[f64]) -> Vec<f64> {
 /// Covariance of the free parameters at one minimum.
 struct Errors {
     /// Over all free parameters; None where one is on a bound or has no rank.
-    covariance: Vec<Vec<Option<f64>>>,
+    covariance: Matrix,
 }
 
 impl Errors {
@@ -126,7 +129,7 @@ impl Errors {
     }
 
     /// Covariance and correlations.
-    fn matrices(&self) -> (Vec<Vec<Option<f64>>>, Vec<Vec<Option<f64>>>) {
+    fn matrices(&self) -> (Matrix, Matrix) {
         let size = self.covariance.len();
         let mut correlations = vec![vec![None; size]; size];
         for (i, row) in correlations.iter_mut().enumerate() {
@@ -156,7 +159,7 @@ impl Errors {
     }
 }
 
-fn no_covariance(size: usize) -> (Vec<Vec<Option<f64>>>, Vec<Vec<Option<f64>>>) {
+fn no_covariance(size: usize) -> (Matrix, Matrix) {
     (vec![vec![None; size]; size], vec![vec![None; size]; size])
 }
 
@@ -338,7 +341,8 @@ fn describe(inner: &[usize], direction: &[f64], names: &[String], relative: f64)
         .filter(|(_, share)| share.abs() > 0.1)
         .map(|(&j, &share)| (names[j].clone(), share))
         .collect();
-    shares.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    // Shares that are equal but for rounding keep the order of the parameters.
+    shares.sort_by(|a, b| (1e6 * b.1.abs()).round().total_cmp(&(1e6 * a.1.abs()).round()));
     if shares.first().is_some_and(|first| first.1 < 0.0) {
         shares.iter_mut().for_each(|share| share.1 = -share.1);
     }
