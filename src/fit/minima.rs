@@ -53,7 +53,7 @@ pub(super) enum Likelihood {
     },
 }
 
-/// ln of the weight of a minimum, up to a constant that all share.
+/// ln of the weight of a minimum under an even prior, up to a constant that all share.
 pub(super) fn ln_weight(cost: f64, curvature: &Curvature, ranges: &[f64], likelihood: Likelihood) -> f64 {
     let (ln_height, sigma) = match likelihood {
         Likelihood::Known => (-0.5 * cost, 1.0),

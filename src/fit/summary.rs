@@ -10,6 +10,7 @@ use super::outcome::{
 use super::search::Survey;
 use super::statistics::{central_95, lag_one, one_sided_95};
 use super::warnings::warnings;
+use crate::parameter::Spread;
 
 /// A square matrix over the free parameters, with holes where there is no number.
 type Matrix = Vec<Vec<Option<f64>>>;
@@ -197,7 +198,9 @@ fn minima(objective: &Objective<'_>, found: &[Found], errors: &[Option<Errors>],
         Likelihood::Unknown { readings: goodness.effective_readings, floor: f64::MIN_POSITIVE }
     };
     let ln_weight = |found: &Found| {
-        found.curvature.as_ref().map_or(f64::NEG_INFINITY, |c| ln_weight(found.cost, c, &ranges, likelihood))
+        found.curvature.as_ref().map_or(f64::NEG_INFINITY, |curvature| {
+            ln_flat_prior(objective, &found.free) + ln_weight(found.cost, curvature, &ranges, likelihood)
+        })
     };
     let weights = normalised(&found.iter().map(ln_weight).collect::<Vec<_>>());
     let count = objective.residuals.parameters().len();
@@ -222,6 +225,18 @@ fn minima(objective: &Objective<'_>, found: &[Found], errors: &[Option<Errors>],
         }
     };
     found.iter().zip(errors).zip(weights).map(minimum).collect()
+}
+
+/// ln of the density that stands for knowing nothing beforehand: even in a parameter that is spread evenly, and even in
+/// the logarithm, 1/x, of one that is spread so (a thickness, a gain), whose scale is not known. A parameter with a prior
+/// of its own has that in the cost.
+fn ln_flat_prior(objective: &Objective<'_>, free: &[f64]) -> f64 {
+    let has_prior = |j: usize| objective.priors.iter().any(|prior| matches!(prior.terms[..], [(k, _)] if k == j));
+    let declared = objective.mapping.free.iter().zip(free).enumerate();
+    declared
+        .filter(|(j, (parameter, _))| parameter.spread == Spread::Logarithmic && !has_prior(*j))
+        .map(|(_, (_, value))| -value.ln())
+        .sum()
 }
 
 fn estimates(

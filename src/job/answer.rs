@@ -1,7 +1,7 @@
 //! The answer in a sentence or two: value ± error, its rivals, what stays open.
 
 use super::outcome::{Case, CaseData, Outcome, ThicknessOrder};
-use crate::fit::{Bound, Estimate, Fit, StopReason};
+use crate::fit::{Bound, Estimate, Fit, Minimum, StopReason, misfit};
 use crate::number::{minus, with_error};
 
 /// A rival minimum with more than this share of the best one's weight is named.
@@ -43,6 +43,7 @@ pub(super) fn case_answer(case: &Case) -> String {
         sentences.extend(rivals(fit));
     }
     sentences.extend(held_out(case));
+    sentences.extend(misfit(&fit.goodness));
     if !fit.open_directions.is_empty() {
         let open: Vec<&str> = fit.open_directions.iter().map(|direction| direction.text.as_str()).collect();
         sentences.push(format!("The data leave open: {}.", open.join("; ")));
@@ -125,37 +126,33 @@ fn value_text(estimate: &Estimate) -> String {
     }
 }
 
-/// A sentence on minima that the data cannot rule out.
+/// Most rivals that a sentence can carry.
+const MOST_RIVALS: usize = 4;
+
+/// A sentence on minima that the data cannot rule out, the heaviest first.
 fn rivals(fit: &Fit) -> Option<String> {
-    let best = fit.minima.first()?;
-    let others: Vec<_> = fit.minima[1..].iter().filter(|minimum| minimum.weight > RIVAL_SHARE * best.weight).collect();
-    if others.is_empty() {
-        let count = fit.minima.len() - 1;
-        return (count > 0).then(|| {
-            format!(
-                "{count} other minima were found, none with more than {} of the best one's weight.",
-                percent(RIVAL_SHARE)
-            )
-        });
+    let (best, others) = fit.minima.split_first()?;
+    let mut heavy: Vec<&Minimum> = others.iter().filter(|minimum| minimum.weight > RIVAL_SHARE * best.weight).collect();
+    if heavy.is_empty() {
+        let count = others.len();
+        let noun = if count == 1 { "other minimum was" } else { "other minima were" };
+        return (count > 0)
+            .then(|| format!("{count} {noun} found, none with more than {} of its weight.", percent(RIVAL_SHARE)));
     }
+    heavy.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let scanned = fit.profiles.first().and_then(|(name, _)| fit.estimates.iter().position(|e| e.name == *name));
-    let texts: Vec<String> = others
-        .iter()
-        .map(|minimum| {
-            let share = percent(minimum.weight / best.weight);
-            match scanned {
-                Some(index) => {
-                    let estimate = &fit.estimates[index];
-                    format!("{} = {:.1} {} ({share})", estimate.symbol, minimum.values[index], estimate.unit)
-                }
-                None => format!("one with {share}"),
-            }
-        })
-        .collect();
-    Some(format!(
-        "Rivals that the data do not rule out, with their share of the best one's weight: {}.",
-        texts.join(", ")
-    ))
+    let text = |minimum: &&Minimum| match scanned {
+        Some(index) => {
+            let Estimate { symbol, unit, .. } = &fit.estimates[index];
+            format!("{symbol} = {:.1} {unit} ({})", minimum.values[index], percent(minimum.weight))
+        }
+        None => percent(minimum.weight),
+    };
+    let mut texts: Vec<String> = heavy.iter().take(MOST_RIVALS).map(text).collect();
+    if heavy.len() > MOST_RIVALS {
+        texts.push(format!("{} more", heavy.len() - MOST_RIVALS));
+    }
+    Some(format!("The data do not rule out {} by weight; the best fit has {}.", list(&texts), percent(best.weight)))
 }
 
 fn percent(share: f64) -> String {

@@ -450,11 +450,13 @@ fn laplace_weights_agree_with_integration() {
         (0..10).map(|_| -0.4 + 0.05 * normal(&mut random)).collect()
     };
     let curve = |x: f64| (5.0 * x).cos() + 0.3 * x;
-    let (lower, upper) = (0.0, 4.0);
-    for known in [true, false] {
+    let (lower, upper) = (0.2, 4.0);
+    // Nothing known beforehand is an even density, or one even in the logarithm where starts are spread so.
+    let cases = [(true, Spread::Linear), (false, Spread::Linear), (true, Spread::Logarithmic)];
+    for (known, spread) in cases {
         let data = &readings;
         let problem = Closure {
-            parameters: vec![parameter("x")],
+            parameters: vec![Parameter { spread, ..parameter("x") }],
             count: data.len(),
             known,
             evaluate: Box::new(move |values, residuals| {
@@ -466,7 +468,8 @@ fn laplace_weights_agree_with_integration() {
         let settings = Settings { starts: 64, ..Settings::default() };
         let result = run(&problem, &[free(1.0, lower, upper)], &settings).unwrap();
         let squares = |x: f64| data.iter().map(|y| ((curve(x) - y) / 0.05).powi(2)).sum::<f64>();
-        let density = |x: f64| if known { (-0.5 * squares(x)).exp() } else { squares(x).powf(-5.0) };
+        let prior = |x: f64| if spread == Spread::Logarithmic { 1.0 / x } else { 1.0 };
+        let density = |x: f64| prior(x) * if known { (-0.5 * squares(x)).exp() } else { squares(x).powf(-5.0) };
         // Every point of the grid belongs to the nearest minimum; wells are narrow, so that borders carry nothing.
         let mut mass = vec![0.0; result.minima.len()];
         for k in 0..400_000 {
