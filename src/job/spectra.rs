@@ -145,9 +145,13 @@ impl SpectraProblem {
             scratch.resize(group.model.channel_count(), 0.0);
             channels.resize(group.model.channel_count(), 0.0);
             for item in &group.items {
-                item.aperture.read(&*bsdf, &mut scratch, &mut channels);
                 let readings = &mut rows[item.first_row..item.first_row + item.values.len()];
-                group.band.average(&channels, readings);
+                if group.band.is_sharp() {
+                    item.aperture.read(&*bsdf, &mut scratch, readings);
+                } else {
+                    item.aperture.read(&*bsdf, &mut scratch, &mut channels);
+                    group.band.average(&channels, readings);
+                }
                 finish(item, readings);
             }
         }

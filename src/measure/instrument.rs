@@ -69,12 +69,13 @@ impl Band {
         Self { wavelengths_nm: nodes.collect(), weights: NORMAL_NODES.iter().map(|(_, weight)| *weight).collect() }
     }
 
+    /// Whether each reading needs only its own wavelength.
+    pub fn is_sharp(&self) -> bool {
+        self.weights.len() == 1
+    }
+
     /// Averages the model's channels into one value a reading.
     pub fn average(&self, channels: &[f64], readings: &mut [f64]) {
-        if let [_] = self.weights[..] {
-            readings.copy_from_slice(channels);
-            return;
-        }
         for (reading, nodes) in readings.iter_mut().zip(channels.chunks_exact(self.weights.len())) {
             *reading = nodes.iter().zip(&self.weights).map(|(value, weight)| value * weight).sum();
         }
@@ -118,6 +119,15 @@ impl Aperture {
 
     /// Writes the reading in each channel; `scratch` is as long as `readings`.
     pub fn read(&self, bsdf: &dyn Bsdf, scratch: &mut [f64], readings: &mut [f64]) {
+        // Zero cones are the usual case, and need no sum.
+        let [(incoming, outgoing, weight)] = self.pairs[..] else { return self.read_cones(bsdf, scratch, readings) };
+        bsdf.evaluate(&incoming, &outgoing, readings);
+        for reading in readings {
+            *reading *= weight;
+        }
+    }
+
+    fn read_cones(&self, bsdf: &dyn Bsdf, scratch: &mut [f64], readings: &mut [f64]) {
         readings.fill(0.0);
         for (incoming, outgoing, weight) in &self.pairs {
             bsdf.evaluate(incoming, outgoing, scratch);

@@ -7,6 +7,7 @@ mod data;
 mod engine;
 mod nist;
 mod optics;
+mod order;
 mod report;
 mod tables;
 mod twins;
