@@ -8,6 +8,7 @@ mod engine;
 mod nist;
 mod optics;
 mod order;
+mod paints;
 mod report;
 mod tables;
 mod twins;
