@@ -104,7 +104,7 @@ pub struct SyntheticFile {
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum ModelFile {
     /// A film, a stack or a plain interface inside a rough surface, over a diffuse base.
-    CoatedBase(Design),
+    CoatedBase(Box<Design>),
     /// The closed law of a single film's peak wavelengths. For peak tables only.
     ThinFilmLaw(ThinFilmLawDesign),
 }

@@ -9,7 +9,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// λ_min/4n at 300 nm, where keratin has 1.532 + 5890/λ².
+/// λ/4n at the shortest wavelength, 300 nm, where keratin has 1.532 + 5890/λ².
 const HALF_ORDER_NM: f64 = 300.0 / (4.0 * 1.5974);
 
 /// Truth and fitted thickness of one synthetic table: 13 angles × 401 wavelengths, 1 % noise, 32 starts.
