@@ -19,6 +19,9 @@ mod materials;
 pub mod microfacet;
 mod note;
 mod polarised;
+mod quadrature;
+mod rough_interface;
+mod rough_transmittance;
 pub mod stack;
 mod stack_kernel;
 
@@ -27,3 +30,6 @@ pub use material::{Dispersion, IndexTable, MaterialError};
 pub use materials::{Certainty, KnownMaterial, known_material, known_materials};
 pub use note::{MaterialNote, Reference};
 pub use polarised::{Amplitudes, Polarised, Response};
+pub(crate) use quadrature::gauss_legendre;
+pub use rough_interface::RoughInterface;
+pub use rough_transmittance::{RoughTransmittance, TransmittanceCurve};

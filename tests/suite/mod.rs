@@ -1,1 +1,3 @@
 mod optics;
+mod oracle;
+mod rough_plastic;
