@@ -5,6 +5,14 @@
 //! wavelengths alone is done when the model is made, work that depends on the parameters when it is bound, and only
 //! the rest for each pair of directions. The loop over channels is the innermost one and runs over contiguous memory.
 
+mod coated_base;
+mod model_error;
+
+pub use coated_base::{
+    CoatedBase, Description, Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice, OwnMaterial,
+};
+pub use model_error::ModelError;
+
 use nalgebra::Vector3;
 
 use crate::parameter::Parameter;

@@ -76,6 +76,11 @@ impl Arrangement {
         Self { material_count, layer_materials, sequence, substrate, interfaces, last_interface, steps }
     }
 
+    /// Number of distinct layers.
+    pub fn layer_count(&self) -> usize {
+        self.layer_materials.len()
+    }
+
     pub(super) fn layer_materials(&self) -> &[usize] {
         &self.layer_materials
     }

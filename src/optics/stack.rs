@@ -19,13 +19,7 @@ pub struct Layer {
 
 /// Response of layers, listed from the light's side, on a substrate. Light comes from a clear medium of index `front` at
 /// `cos_theta` (0 to 1) to the normal. No layers is a plain interface.
-pub fn transfer(
-    front: f64,
-    layers: &[Layer],
-    substrate: Complex64,
-    cos_theta: f64,
-    wavelength_nm: f64,
-) -> Response {
+pub fn transfer(front: f64, layers: &[Layer], substrate: Complex64, cos_theta: f64, wavelength_nm: f64) -> Response {
     let wave = Wave::new(front, cos_theta, wavelength_nm);
     let last = wave.medium(substrate);
     let mut below = last;

@@ -1,3 +1,4 @@
+mod coated_base;
 mod optics;
 mod oracle;
 mod rough_plastic;
