@@ -1,7 +1,9 @@
 //! Rough dielectric interfaces over a diffuse base: power fractions, their shipped table, rough plastic plain and
 //! iridescent.
 
+use barbule::bsdf::{Direction, Model, RoughPlastic, RoughPlasticDesign};
 use barbule::optics::{RoughInterface, RoughTransmittance};
+use proptest::prelude::*;
 use rand::Rng;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -128,4 +130,108 @@ fn tabulated_diffuse_fractions_are_right() {
 #[ignore = "long: run by .ci/long"]
 fn tabulated_diffuse_fractions_are_right_everywhere() {
     assert!(worst_diffuse_error(3000) <= 1e-3);
+}
+
+const RGB_NM: [f64; 3] = [645.0, 525.0, 445.0];
+
+/// Values of a model's parameters by name; the others at their defaults.
+fn values(model: &dyn Model, changes: &[(&str, f64)]) -> Vec<f64> {
+    let mut values: Vec<f64> = model.parameters().iter().map(|parameter| parameter.default).collect();
+    for (name, value) in changes {
+        let position = model.parameters().iter().position(|parameter| parameter.name == *name);
+        values[position.unwrap_or_else(|| panic!("no parameter {name}"))] = *value;
+    }
+    model.check(&values).unwrap();
+    values
+}
+
+fn evaluate(model: &dyn Model, values: &[f64], incoming: &Direction, outgoing: &Direction) -> Vec<f64> {
+    let mut found = vec![f64::NAN; model.channel_count()];
+    model.bind(values).evaluate(incoming, outgoing, &mut found);
+    found
+}
+
+fn direction(oracle: &Oracle, row: usize, name: &str) -> Direction {
+    let [x, y, z] = ["x", "y", "z"].map(|axis| oracle.number(row, &format!("{name}_{axis}")));
+    Direction::new(x, y, z)
+}
+
+/// Every third row of the printed values, whose eval includes the viewer's cosine.
+#[test]
+fn rough_plastic_agrees_with_its_table() {
+    let oracle = Oracle::read("tests/oracles/roughplastic.csv");
+    let model = RoughPlastic::new(&RoughPlasticDesign::default(), &[550.0]).unwrap();
+    let peak_of = |alpha, eta| {
+        (0..oracle.rows.len())
+            .filter(|&row| oracle.text(row, "alpha") == alpha && oracle.text(row, "eta") == eta)
+            .map(|row| oracle.number(row, "exact_spec"))
+            .fold(0.0, f64::max)
+    };
+    let (mut worst_gloss, mut worst_diffuse): (f64, f64) = (0.0, 0.0);
+    for row in 0..oracle.rows.len() {
+        let number = |name| oracle.number(row, name);
+        let (incoming, outgoing) = (direction(&oracle, row, "wi"), direction(&oracle, row, "wo"));
+        let of_weights = |specular, diffuse| {
+            let changes =
+                [("roughness", number("alpha")), ("eta", number("eta")), ("specular", specular), ("diffuse", diffuse)];
+            evaluate(&model, &values(&model, &changes), &incoming, &outgoing)[0] * outgoing.z
+        };
+        let gloss = of_weights(1.0, 0.0);
+        // The directions are printed with twelve digits, which is 1e-9 of a steep lobe's value.
+        if number("exact_spec") > 1e-6 * peak_of(oracle.text(row, "alpha"), oracle.text(row, "eta")) {
+            worst_gloss = worst_gloss.max((gloss / number("exact_spec") - 1.0).abs());
+        }
+        if number("diffuse") > 0.0 {
+            let diffuse = of_weights(0.0, number("diffuse"));
+            worst_diffuse = worst_diffuse.max((diffuse / number("exact_diff") - 1.0).abs());
+        }
+    }
+    println!("gloss {worst_gloss:.2e}, diffuse {worst_diffuse:.2e}");
+    assert!(worst_gloss <= 1e-6, "worst relative error of the gloss {worst_gloss:e}");
+    assert!(worst_diffuse <= 5e-3, "worst relative error of the diffuse part {worst_diffuse:e}");
+}
+
+fn any_direction_above() -> impl Strategy<Value = Direction> {
+    (0.0..1.0f64, 0.0..std::f64::consts::TAU).prop_map(|(cosine, azimuth)| {
+        let sine = (1.0 - cosine * cosine).sqrt();
+        Direction::new(sine * azimuth.cos(), sine * azimuth.sin(), cosine)
+    })
+}
+
+proptest! {
+    #[test]
+    fn rough_plastic_is_reciprocal(
+        roughness in RoughTransmittance::ROUGHNESSES,
+        eta in RoughTransmittance::INDICES,
+        (i, o) in (any_direction_above(), any_direction_above()),
+    ) {
+        let model = RoughPlastic::new(&RoughPlasticDesign::default(), &RGB_NM).unwrap();
+        let values = values(&model, &[("roughness", roughness), ("eta", eta)]);
+        prop_assert_eq!(evaluate(&model, &values, &i, &o), evaluate(&model, &values, &o, &i));
+    }
+
+    /// The fast path against the readable one: a cubic between curve nodes costs 1e-5 of the value at most.
+    #[test]
+    fn many_pairs_are_as_good_as_one(
+        roughness in RoughTransmittance::ROUGHNESSES,
+        eta in RoughTransmittance::INDICES,
+        pairs in prop::collection::vec((any_direction_above(), any_direction_above(), any::<bool>()), 1..150),
+    ) {
+        let design = RoughPlasticDesign { per_channel: vec!["diffuse".to_owned()], ..Default::default() };
+        let model = RoughPlastic::new(&design, &RGB_NM).unwrap();
+        let values = values(&model, &[("roughness", roughness), ("eta", eta), ("diffuse_r", 0.9), ("diffuse_b", 0.1)]);
+        let incoming: Vec<Direction> = pairs.iter().map(|(i, _, below)| if *below { -i } else { *i }).collect();
+        // Near the mirror direction, so that the gloss is not always nothing.
+        let outgoing: Vec<Direction> = pairs
+            .iter()
+            .map(|(i, o, _)| (Direction::new(-i.x, -i.y, i.z) + o * roughness).normalize())
+            .collect();
+        let mut found = vec![f64::NAN; 3 * pairs.len()];
+        model.bind(&values).evaluate_many(&incoming, &outgoing, &mut found);
+        for ((i, o), found) in incoming.iter().zip(&outgoing).zip(found.chunks_exact(3)) {
+            for (found, expected) in found.iter().zip(evaluate(&model, &values, i, o)) {
+                prop_assert!((found - expected).abs() <= 1e-5 * expected, "{i:?} {o:?}: {found} instead of {expected}");
+            }
+        }
+    }
 }
