@@ -7,6 +7,9 @@
 
 mod channel_parameters;
 mod coated_base;
+mod granier;
+mod interference;
+mod iridescent_plastic;
 mod lambertian;
 mod microfacet;
 mod model_error;
@@ -15,6 +18,9 @@ mod rough_plastic;
 pub use coated_base::{
     CoatedBase, Description, Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice, OwnMaterial,
 };
+pub use granier::{GranierHeidrich, GranierHeidrichDesign, NormalSource, Site, normal_from_rgb};
+pub use interference::Interference;
+pub use iridescent_plastic::{IridescentPlastic, IridescentPlasticDesign};
 pub use lambertian::{Lambertian, LambertianDesign};
 pub use microfacet::{Distribution, MicrofacetDesign, MicrofacetInterface};
 pub use model_error::ModelError;

@@ -33,4 +33,4 @@ pub use note::{MaterialNote, Reference};
 pub use polarised::{Amplitudes, Polarised, Response};
 pub(crate) use quadrature::gauss_legendre;
 pub use rough_interface::RoughInterface;
-pub use rough_transmittance::{RoughTransmittance, TransmittanceCurve};
+pub use rough_transmittance::{RoughTransmittance, TransmittanceCurve, TransmittanceCurves};

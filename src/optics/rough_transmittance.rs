@@ -108,6 +108,20 @@ impl RoughTransmittance {
         TransmittanceCurve { scale: CosineScale::new(eta, alpha), nodes }
     }
 
+    /// T(μ) for each of several indices `etas` ≥ 1, as [`RoughTransmittance::curve`] gives it, at one roughness.
+    pub fn curves(etas: &[f64], alpha: f64) -> TransmittanceCurves {
+        let (count, channels) = (Side::Thinner.cosine_nodes(), etas.len());
+        let mut nodes = vec![0.0; count * channels];
+        for (channel, &eta) in etas.iter().enumerate() {
+            debug_assert!(eta >= 1.0, "light must come from the thinner side, found η = {eta}");
+            for (node, value) in Self::curve(eta, alpha).nodes.into_iter().enumerate() {
+                nodes[node * channels + channel] = value;
+            }
+        }
+        // From the thinner side the scale depends on the roughness alone.
+        TransmittanceCurves { scale: CosineScale::new(1.0, alpha), nodes, channels }
+    }
+
     /// Share of diffuse light that the interface throws back, 2 ∫ R(μ) μ dμ.
     pub fn diffuse_reflectance(eta: f64, alpha: f64) -> f64 {
         let (side, place) = Place::of(eta, alpha);
@@ -161,6 +175,29 @@ impl TransmittanceCurve {
     pub fn at(&self, cos_theta: f64) -> f64 {
         let (first, weights) = catmull_rom(self.scale.share(cos_theta), self.nodes.len());
         self.nodes[first..].iter().zip(weights).map(|(node, weight)| weight * node).sum()
+    }
+}
+
+/// T over the cosine for interfaces that share a roughness and differ in index: one a channel, light from the thinner
+/// side.
+#[derive(Debug, Clone)]
+pub struct TransmittanceCurves {
+    scale: CosineScale,
+    /// Every channel at the first node, then at the second: contiguous along the channels.
+    nodes: Vec<f64>,
+    channels: usize,
+}
+
+impl TransmittanceCurves {
+    /// Multiplies each channel's value by its T at 0 ≤ `cos_theta` ≤ 1.
+    pub fn multiply(&self, cos_theta: f64, values: &mut [f64]) {
+        let (first, weights) = catmull_rom(self.scale.share(cos_theta), self.nodes.len() / self.channels);
+        let start = first * self.channels;
+        let mut rows = self.nodes[start..].chunks_exact(self.channels);
+        let [Some(a), Some(b), Some(c), Some(d)] = std::array::from_fn(|_| rows.next()) else { return };
+        for ((((value, a), b), c), d) in values.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+            *value *= weights[0] * a + weights[1] * b + weights[2] * c + weights[3] * d;
+        }
     }
 }
 

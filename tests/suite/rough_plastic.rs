@@ -1,7 +1,10 @@
 //! Rough dielectric interfaces over a diffuse base: power fractions, their shipped table, rough plastic plain and
 //! iridescent.
 
-use barbule::bsdf::{Direction, Model, RoughPlastic, RoughPlasticDesign};
+use barbule::bsdf::{
+    Direction, Interference, InternalReflection, IridescentPlastic, IridescentPlasticDesign, Model, RoughPlastic,
+    RoughPlasticDesign,
+};
 use barbule::optics::{RoughInterface, RoughTransmittance};
 use proptest::prelude::*;
 use rand::Rng;
@@ -9,6 +12,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
+use super::directions::{
+    RGB_NM, any_direction, any_direction_above, directional_albedo, evaluate, largest_albedo, spherical, values,
+};
 use super::oracle::Oracle;
 
 /// A power fraction and the printed one differ by less than one part in a million; the table has ten digits behind the
@@ -132,25 +138,6 @@ fn tabulated_diffuse_fractions_are_right_everywhere() {
     assert!(worst_diffuse_error(3000) <= 1e-3);
 }
 
-const RGB_NM: [f64; 3] = [645.0, 525.0, 445.0];
-
-/// Values of a model's parameters by name; the others at their defaults.
-fn values(model: &dyn Model, changes: &[(&str, f64)]) -> Vec<f64> {
-    let mut values: Vec<f64> = model.parameters().iter().map(|parameter| parameter.default).collect();
-    for (name, value) in changes {
-        let position = model.parameters().iter().position(|parameter| parameter.name == *name);
-        values[position.unwrap_or_else(|| panic!("no parameter {name}"))] = *value;
-    }
-    model.check(&values).unwrap();
-    values
-}
-
-fn evaluate(model: &dyn Model, values: &[f64], incoming: &Direction, outgoing: &Direction) -> Vec<f64> {
-    let mut found = vec![f64::NAN; model.channel_count()];
-    model.bind(values).evaluate(incoming, outgoing, &mut found);
-    found
-}
-
 fn direction(oracle: &Oracle, row: usize, name: &str) -> Direction {
     let [x, y, z] = ["x", "y", "z"].map(|axis| oracle.number(row, &format!("{name}_{axis}")));
     Direction::new(x, y, z)
@@ -191,13 +178,6 @@ fn rough_plastic_agrees_with_its_table() {
     assert!(worst_diffuse <= 5e-3, "worst relative error of the diffuse part {worst_diffuse:e}");
 }
 
-fn any_direction_above() -> impl Strategy<Value = Direction> {
-    (0.0..1.0f64, 0.0..std::f64::consts::TAU).prop_map(|(cosine, azimuth)| {
-        let sine = (1.0 - cosine * cosine).sqrt();
-        Direction::new(sine * azimuth.cos(), sine * azimuth.sin(), cosine)
-    })
-}
-
 proptest! {
     #[test]
     fn rough_plastic_is_reciprocal(
@@ -234,4 +214,167 @@ proptest! {
             }
         }
     }
+}
+
+/// White base under a white light: what comes back is R + T T_int/(1 − R_int), by quadrature that shares nothing with
+/// the scattering function but the definitions, and never more than arrives.
+#[test]
+fn rough_plastic_never_creates_light() {
+    let docs = include_str!("../../src/bsdf/rough_plastic.rs");
+    let model = RoughPlastic::new(&RoughPlasticDesign::default(), &[550.0]).unwrap();
+    for alpha in [0.1, 0.3, 0.5] {
+        let (outside, inside) = (RoughInterface::new(1.5, alpha), RoughInterface::new(1.0 / 1.5, alpha));
+        let returned = inside.diffuse_transmittance() / (1.0 - inside.diffuse_reflectance());
+        let values = values(&model, &[("roughness", alpha), ("eta", 1.5), ("diffuse", 1.0)]);
+        let bound = model.bind(&values);
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        for degrees in 0..90 {
+            let incoming = spherical(f64::from(degrees).to_radians(), 0.0);
+            let expected = outside.reflectance(incoming.z) + outside.transmittance(incoming.z) * returned;
+            (least, most) = (least.min(expected), most.max(expected));
+            if degrees % 15 == 0 {
+                let found = directional_albedo(bound.as_ref(), &incoming, true, (400, 100));
+                // The table of T is good to 5e-4.
+                assert!((found - expected).abs() < 1e-3, "α {alpha}, {degrees}°: {found} instead of {expected}");
+            }
+        }
+        assert!(most <= 1.0);
+        let row = format!("//! | {alpha} | {least:.3} | {most:.3} |");
+        println!("{row}");
+        assert!(docs.contains(&row), "the model's docs lack the row {row}");
+    }
+}
+
+fn iridescent(interference: Interference, wavelengths_nm: &[f64]) -> IridescentPlastic {
+    let design = IridescentPlasticDesign { interference, ..Default::default() };
+    IridescentPlastic::new(&design, wavelengths_nm).unwrap()
+}
+
+/// Energy is not conserved, and the docs say by how much.
+#[test]
+fn iridescent_plastic_states_its_largest_albedo() {
+    let docs = include_str!("../../src/bsdf/iridescent_plastic.rs");
+    for alpha in [0.1, 0.3, 0.5] {
+        let [constructive, destructive] =
+            [Interference::Constructive, Interference::Destructive].map(|interference| {
+                let model = iridescent(interference, &[550.0]);
+                let changes = [("roughness", alpha), ("eta", 1.5), ("diffuse", 1.0)];
+                largest_albedo(&model, &values(&model, &changes))
+            });
+        let row = format!("//! | {alpha} | {constructive:.2} | {destructive:.2} |");
+        println!("{row}");
+        assert!(docs.contains(&row), "the model's docs lack the row {row}");
+    }
+}
+
+proptest! {
+    /// With the phase term off and one index it is rough plastic, to rounding.
+    #[test]
+    fn iridescent_plastic_without_interference_is_rough_plastic(
+        roughness in RoughTransmittance::ROUGHNESSES,
+        eta in RoughTransmittance::INDICES,
+        (specular, diffuse) in (0.0..=1.0, 0.0..=1.0),
+        thickness_nm in 0.0..=5000.0,
+        choice in 0..3_usize,
+        (i, o) in (any_direction(), any_direction()),
+    ) {
+        let internal_reflection =
+            [InternalReflection::Linear, InternalReflection::Nonlinear, InternalReflection::Thesis][choice];
+        let plain = RoughPlasticDesign { internal_reflection, ..Default::default() };
+        let plain = RoughPlastic::new(&plain, &RGB_NM).unwrap();
+        let coloured =
+            IridescentPlasticDesign { internal_reflection, interference: Interference::Off, ..Default::default() };
+        let coloured = IridescentPlastic::new(&coloured, &RGB_NM).unwrap();
+        let changes = [("roughness", roughness), ("eta", eta), ("specular", specular), ("diffuse", diffuse)];
+        let expected = evaluate(&plain, &values(&plain, &changes), &i, &o);
+        let changes = [&changes[..], &[("thickness_nm", thickness_nm)]].concat();
+        for (found, expected) in evaluate(&coloured, &values(&coloured, &changes), &i, &o).iter().zip(&expected) {
+            prop_assert!((found - expected).abs() <= 1e-14 * expected, "{found} instead of {expected}");
+        }
+    }
+
+    /// Each channel is a model of its own, f_r and f_t of which are two rough plastics; their interference is written
+    /// out here.
+    #[test]
+    fn iridescent_plastic_interferes_channel_by_channel(
+        roughness in 0.05..=1.0,
+        (eta_r, eta_g, eta_b) in (1.3..=1.8, 1.3..=1.8, 1.3..=1.8),
+        thickness_nm in 0.0..=1000.0,
+        (i, o) in (any_direction_above(), any_direction_above()),
+    ) {
+        let design = IridescentPlasticDesign { per_channel: vec!["eta".to_owned()], ..Default::default() };
+        let model = IridescentPlastic::new(&design, &RGB_NM).unwrap();
+        let of_channels = [("eta_r", eta_r), ("eta_g", eta_g), ("eta_b", eta_b)];
+        let film = [("roughness", roughness), ("thickness_nm", thickness_nm)];
+        let found = evaluate(&model, &values(&model, &[&film[..], &of_channels].concat()), &i, &o);
+        let plain = RoughPlastic::new(&RoughPlasticDesign::default(), &[550.0]).unwrap();
+        for ((found, (_, eta)), wavelength_nm) in found.iter().zip(of_channels).zip(RGB_NM) {
+            let term = |specular, diffuse| {
+                let changes = [("roughness", roughness), ("eta", eta), ("specular", specular), ("diffuse", diffuse)];
+                evaluate(&plain, &values(&plain, &changes), &i, &o)[0]
+            };
+            let (reflected, transmitted) = (term(1.0, 0.0), term(0.0, 0.5));
+            let inside = |cosine: f64| ((1.0 - cosine * cosine).sqrt() / eta).asin().cos();
+            let phase = std::f64::consts::PI * eta * thickness_nm / wavelength_nm * (inside(i.z) + inside(o.z));
+            let expected = reflected + transmitted + 2.0 * (2.0 * phase).cos() * (reflected * transmitted).sqrt();
+            prop_assert!((found - expected).abs() <= 1e-11 * (reflected + transmitted), "{found} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn iridescent_plastic_is_reciprocal(
+        roughness in RoughTransmittance::ROUGHNESSES,
+        thickness_nm in 0.0..=5000.0,
+        (i, o) in (any_direction_above(), any_direction_above()),
+    ) {
+        let model = iridescent(Interference::Film, &RGB_NM);
+        let values = values(&model, &[("roughness", roughness), ("thickness_nm", thickness_nm)]);
+        prop_assert_eq!(evaluate(&model, &values, &i, &o), evaluate(&model, &values, &o, &i));
+    }
+}
+
+/// The three ways to sum the bounces, at one point of the oracle's grid: f_t goes as 1/(1 − R_int), 1/(1 − w_d R_int) and
+/// 1/T_int.
+#[test]
+fn bounces_are_summed_as_asked() {
+    let (r_int, t_int) = (0.5375340626, 0.408167204); // η 1.5, α 0.3 in rough_internal.csv
+    let (i, o) = (spherical(0.4, 0.0), spherical(0.7, 2.0));
+    let diffuse_part = |internal_reflection| {
+        let design = RoughPlasticDesign { internal_reflection, ..Default::default() };
+        let model = RoughPlastic::new(&design, &[550.0]).unwrap();
+        let changes = [("roughness", 0.3), ("eta", 1.5), ("specular", 0.0), ("diffuse", 0.4)];
+        evaluate(&model, &values(&model, &changes), &i, &o)[0]
+    };
+    let linear = diffuse_part(InternalReflection::Linear);
+    for (option, expected) in [
+        (InternalReflection::Nonlinear, (1.0 - r_int) / (1.0 - 0.4 * r_int)),
+        (InternalReflection::Thesis, (1.0 - r_int) / t_int),
+    ] {
+        let found = diffuse_part(option) / linear;
+        // Both means come from the table, good to 1e-4.
+        assert!((found - expected).abs() < 3e-4, "{option:?}: {found} instead of {expected}");
+    }
+}
+
+#[test]
+fn bad_values_get_a_sentence() {
+    let model = RoughPlastic::new(&RoughPlasticDesign::default(), &RGB_NM).unwrap();
+    let check = |values: &[f64]| model.check(values).unwrap_err().to_string();
+    assert_eq!(
+        check(&[-0.1, 1.5, 1.0, 0.5]),
+        "`roughness` is -0.1; expected a number from 0.005 to 1: roughness of the coat, √2 times the standard deviation of \
+         its slopes (Beckmann)"
+    );
+    assert!(check(&[0.1, 0.9, 1.0, 0.5]).starts_with("`eta` is 0.9; expected a number from 1.05 to 2.5"));
+    assert!(check(&[0.1, 1.5, 1.0, f64::NAN]).starts_with("`diffuse` is NaN; expected a number from 0 to 1"));
+    assert!(check(&[0.1]).contains("4 parameters, found 1 values"));
+    let misnamed = RoughPlasticDesign { per_channel: vec!["roughness".to_owned()], ..Default::default() };
+    assert_eq!(
+        RoughPlastic::new(&misnamed, &RGB_NM).unwrap_err().to_string(),
+        "`per_channel` names \"roughness\"; expected some of: specular, diffuse"
+    );
+    assert!(RoughPlastic::new(&RoughPlasticDesign::default(), &[]).is_err());
+    assert!(RoughPlastic::new(&RoughPlasticDesign::default(), &[f64::NAN]).is_err());
+    let typed: Result<RoughPlasticDesign, _> = toml::from_str("internal_reflection = \"some\"");
+    assert!(typed.unwrap_err().to_string().contains("expected one of `linear`, `nonlinear`, `thesis`"));
 }
