@@ -30,14 +30,14 @@
 //!
 //! **Not reciprocal, and energy is not conserved.** As printed the weights carry the 1/sr: f_d = 1 is an albedo of π w_d,
 //! and the lobes are not normalised. `normalised` divides f_d by π and multiplies the lobes by (e + 2)/2π, which makes
-//! each of them 1 at normal incidence. Largest directional albedo over all inclinations of the light, at unit weights,
-//! parallel surfaces and η 1.5, for all cosines of the phases equal to 1 and to −1:
+//! each of them 1 at normal incidence. Largest directional albedo over inclinations of the light from 0 to 89°, at
+//! unit weights, parallel surfaces and η 1.5, with the cosines of both phases equal to 1 and to −1:
 //!
 //! | e0 = e1 | printed, 1 | printed, −1 | normalised, 1 | normalised, −1 |
 //! | --- | --- | --- | --- | --- |
-//! | 0 | 0.0000 | 0.0000 | 0.0000 | 0.0000 |
-//! | 10 | 0.0000 | 0.0000 | 0.0000 | 0.0000 |
-//! | 130 | 0.0000 | 0.0000 | 0.0000 | 0.0000 |
+//! | 0 | 9.34 | 3.33 | 2.97 | 1.06 |
+//! | 10 | 6.24 | 2.19 | 4.13 | 1.98 |
+//! | 130 | 5.03 | 1.46 | 4.20 | 2.02 |
 //!
 //! Where energy counts, use [`super::CoatedBase`]. Left out besides: masking, absorption, light that goes round in the
 //! film more than once, polarisation.

@@ -1,5 +1,6 @@
 mod coated_base;
 mod directions;
+mod granier;
 mod microfacet;
 mod optics;
 mod oracle;
