@@ -1,3 +1,3 @@
-//! All integration tests in one binary; the module list is the table of contents.
+//! All integration tests in one binary.
 
 mod suite;

@@ -9,9 +9,10 @@
 //! arrives. Without it the model never reflects more than it receives.
 //!
 //! Under a clear coat of index n both directions are refracted into the coat first, R is that of the layers in the coat,
-//! and f = T(θi) T(θo) f_inside / n², T being the coat's Fresnel transmittance. The gloss of the coat's own surface and
+//! and the result is T(θi) T(θo)/n² times the value inside, T being the coat's Fresnel transmittance. The gloss of the coat's own surface and
 //! light that the coat turns back to the layers are left out.
 
+mod base;
 mod description;
 mod design;
 mod variable_material;
@@ -21,6 +22,7 @@ pub use design::{Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice,
 
 use std::f64::consts::PI;
 
+use self::base::Base;
 use self::design::check_name;
 use self::variable_material::{Channels, VariableMaterial};
 use super::{Bsdf, Direction, Model, ModelError};
@@ -38,6 +40,7 @@ pub struct CoatedBase {
     design: Design,
     parameters: Vec<Parameter>,
     materials: Vec<VariableMaterial>,
+    base: Base,
     arrangement: Arrangement,
     channels: Channels,
     wavelengths_nm: Vec<f64>,
@@ -69,10 +72,12 @@ impl CoatedBase {
         }
         let substrate = layer_materials.split_off(layers.list.len())[0];
 
-        parameters.extend([roughness(), diffuse_albedo()]);
+        parameters.push(roughness());
+        let base = Base::declare(&design.base_knots_nm, wavelengths_nm, &mut parameters)?;
         Ok(Self {
             design: design.clone(),
             parameters,
+            base,
             arrangement: Arrangement::new(materials.len(), layer_materials, layers.sequence, substrate),
             channels: Channels::new(wavelengths_nm, &materials),
             materials,
@@ -90,6 +95,18 @@ impl CoatedBase {
         let channels = Channels::new(wavelengths_nm, &self.materials);
         let inside = self.design.clear_coat.map_or(cos_theta, |index| refracted_cosine(cos_theta, index));
         self.medium(&channels, values).reflectance(self.front(), inside, reflectance);
+    }
+
+    /// Σ n d of all layers at a wavelength, nm, for parameter values as in [`Model::bind`]: no fringe of the spectrum is
+    /// shorter than the period 1/(2 Σ n d) in wavenumber.
+    pub fn optical_thickness_nm(&self, values: &[f64], wavelength_nm: f64) -> f64 {
+        let channels = Channels::new(&[wavelength_nm], &self.materials);
+        self.medium(&channels, values).optical_thickness_nm()[0]
+    }
+
+    /// Whether a parameter can move a maximum of the bare reflectance: all but roughness and base, which stand last.
+    pub fn moves_peaks(&self, parameter: usize) -> bool {
+        parameter + 1 + self.base.count() < self.parameters.len()
     }
 
     /// Index of the medium that the layers lie in.
@@ -119,12 +136,14 @@ impl Model for CoatedBase {
 
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
         debug_assert_eq!(values.len(), self.parameters.len(), "one value a parameter");
-        let &[.., roughness, diffuse_albedo] = values else { unreachable!("the list ends with these two") };
+        // Roughness and then the base's albedos are declared last.
+        let (layers_and_roughness, albedos) = values.split_at(values.len() - self.base.count());
+        let roughness = layers_and_roughness[layers_and_roughness.len() - 1];
         Box::new(BoundCoatedBase {
             medium: self.medium(&self.channels, values),
             clear_coat: self.design.clear_coat,
             surface: Beckmann::new(roughness),
-            diffuse: diffuse_albedo / PI,
+            diffuse: self.base.albedo(albedos).into_iter().map(|albedo| albedo / PI).collect(),
         })
     }
 }
@@ -135,8 +154,8 @@ struct BoundCoatedBase<'a> {
     medium: LayeredMedium<'a>,
     clear_coat: Option<f64>,
     surface: Beckmann,
-    /// ρ/π.
-    diffuse: f64,
+    /// ρ/π in each channel.
+    diffuse: Vec<f64>,
 }
 
 impl Bsdf for BoundCoatedBase<'_> {
@@ -171,9 +190,8 @@ impl BoundCoatedBase<'_> {
         let lobe = self.surface.density(cos_half) * visible / (4.0 * (incoming.z * outgoing.z));
 
         self.medium.reflectance(front, cos_facet, values);
-        let (lobe, diffuse) = (scale * lobe, scale * self.diffuse);
-        for value in values {
-            *value = lobe * *value + diffuse;
+        for (value, diffuse) in values.iter_mut().zip(&self.diffuse) {
+            *value = scale * (lobe * *value + diffuse);
         }
     }
 }
@@ -271,20 +289,6 @@ fn roughness() -> Parameter {
         spread: Spread::Logarithmic,
         scan_step: None,
         text: "roughness of the surface, √2 times the standard deviation of its slopes (Beckmann)".to_owned(),
-    }
-}
-
-fn diffuse_albedo() -> Parameter {
-    Parameter {
-        name: "diffuse_albedo".to_owned(),
-        symbol: "ρ".to_owned(),
-        unit: "",
-        default: 0.0,
-        lower: 0.0,
-        upper: 1.0,
-        spread: Spread::Linear,
-        scan_step: None,
-        text: "share of the light that comes back diffusely, the same at every wavelength".to_owned(),
     }
 }
 

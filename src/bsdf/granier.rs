@@ -9,10 +9,10 @@
 //! f_d = 1 + 2 cos(4π η d/λ) √(T_d (1 − T_d))                       T_d = (80/21) η/(1 + η)²
 //! ```
 //!
-//! n0 is the film's outer normal, n1 that of its inner surface. ω_ti and ω_to are ωi and ωo refracted at n0 and point
-//! into the film: ω_ti = −ωi/η + ((ωi·n0)/η − cosθ_ti) n0, cosθ_ti = √(1 − (1 − (ωi·n0)²)/η²). F is Schlick's
+//! n0 is the film's outer normal, n1 that of its inner surface. `ω_ti` and `ω_to` are ωi and ωo refracted at n0 and point
+//! into the film: `ω_ti = −ωi/η + ((ωi·n0)/η − cosθ_ti) n0`, `cosθ_ti = √(1 − (1 − (ωi·n0)²)/η²)`. F is Schlick's
 //! f + (1 − f)(1 − c)⁵ with f = ((1 − η)/(1 + η))². Equations 2.23 to 2.35, 3.3 and 3.4 with their misprints mended; the
-//! medium outside has index 1. Cosines of the lobes at or below 0 give no light, and so does f_s where ωi or ωo lies
+//! medium outside has index 1. Cosines of the lobes at or below 0 give no light, and so does `f_s` where ωi or ωo lies
 //! behind n0. 0 where either direction is below the horizon of the shading normal, z.
 //!
 //! | parameter | symbol | unit | default | range |
@@ -21,15 +21,15 @@
 //! | `outer_exponent` | e0 | | 130 | 0 to 1e4 |
 //! | `inner_exponent` | e1 | | 130 | 0 to 1e4 |
 //! | `eta`, shared or per channel | η | | 1.56 (keratin) | 1.05 to 3 |
-//! | `specular`, shared or per channel | w_s | 1/sr as printed | 1 | 0 to 1 |
-//! | `diffuse`, shared or per channel | w_d | 1/sr as printed | 0.1 | 0 to 1 |
+//! | `specular`, shared or per channel | `w_s` | 1/sr as printed | 1 | 0 to 1 |
+//! | `diffuse`, shared or per channel | `w_d` | 1/sr as printed | 0.1 | 0 to 1 |
 //! | `outer_tilt_deg`, `outer_azimuth_deg` of a `spherical` n0 | | ° | 0, 0 | 0 to 80, −360 to 360 |
 //! | `inner_tilt_deg`, `inner_azimuth_deg` of a `spherical` n1 | | ° | 0, 0 | 0 to 80, −360 to 360 |
 //!
 //! A `mapped` normal and a texture of thicknesses come with each point of the surface, see [`GranierHeidrich::at`].
 //!
-//! **Not reciprocal, and energy is not conserved.** As printed the weights carry the 1/sr: f_d = 1 is an albedo of π w_d,
-//! and the lobes are not normalised. `normalised` divides f_d by π and multiplies the lobes by (e + 2)/2π, which makes
+//! **Not reciprocal, and energy is not conserved.** As printed the weights carry the 1/sr: `f_d = 1` is an albedo of `π w_d`,
+//! and the lobes are not normalised. `normalised` divides `f_d` by π and multiplies the lobes by (e + 2)/2π, which makes
 //! each of them 1 at normal incidence. Largest directional albedo over inclinations of the light from 0 to 89°, at
 //! unit weights, parallel surfaces and η 1.5, with the cosines of both phases equal to 1 and to −1:
 //!
@@ -305,11 +305,11 @@ struct Channel {
     inverse_eta: f64,
     /// f, Schlick's reflectance along the normal.
     normal_reflectance: f64,
-    /// w_s.
+    /// `w_s`.
     specular: f64,
-    /// w_d f_d.
+    /// `w_d f_d`.
     diffuse: f64,
-    /// 2Φ per unit of [ω_ti + ω_to]·(−n0).
+    /// 2Φ per unit of `[ω_ti + ω_to]·(−n0)`.
     double_phase: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The phase term that two models of the second thesis share: f_Φ = 2 cos(2Φ) √(f_r f_t).
+//! The phase term that two models of the second thesis share: `f_Φ = 2 cos(2Φ) √(f_r f_t)`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -5,8 +5,8 @@
 //! f = f_r + f_t + 2 cos(2Φ) √(f_r f_t),      2Φ = (2π η d/λ) (cosθ_ti + cosθ_to)
 //! ```
 //!
-//! f_r and f_t are the two terms of [`super::RoughPlastic`], weights included and without a cosine, in every channel with
-//! its own index η and wavelength λ; θ_ti and θ_to are the inclinations inside the film (equations 3.15 to 3.22; the
+//! `f_r` and `f_t` are the two terms of [`super::RoughPlastic`], weights included and without a cosine, in every channel with
+//! its own index η and wavelength λ; `θ_ti` and `θ_to` are the inclinations inside the film (equations 3.15 to 3.22; the
 //! medium outside has index 1, so that η is the film's). 0 where either direction is below the horizon.
 //!
 //! | parameter | symbol | unit | default | range |
@@ -14,8 +14,8 @@
 //! | `thickness_nm` | d | nm | 330 | 0 to 5000 |
 //! | `roughness` | α | | 0.1 | 0.005 to 1 |
 //! | `eta`, shared or per channel | η | | 1.56 (keratin) | 1.05 to 2.5 |
-//! | `specular`, shared or per channel | w_s | | 1 | 0 to 1 |
-//! | `diffuse`, shared or per channel | w_d | | 0.5 | 0 to 1 |
+//! | `specular`, shared or per channel | `w_s` | | 1 | 0 to 1 |
+//! | `diffuse`, shared or per channel | `w_d` | | 0.5 | 0 to 1 |
 //!
 //! Reciprocal, but **energy is not conserved**: a beam is added to diffuse light as if the two were coherent. With unit
 //! weights and η 1.5 the largest directional albedo, over inclinations of the light from 0 to 89°, is for cos 2Φ = 1 and
@@ -28,7 +28,7 @@
 //! | 0.5 | 1.08 | 0.47 |
 //!
 //! Where energy counts, use [`super::CoatedBase`]. `interference` may be `off` (then it is rough plastic to rounding; a
-//! thickness of 0 is not, there the term is +2√(f_r f_t)), or one of its bounds. Left out besides: light that goes round
+//! thickness of 0 is not, there the term is `+2√(f_r f_t)`), or one of its bounds. Left out besides: light that goes round
 //! in the film more than once, absorption, polarisation.
 
 use std::f64::consts::PI;
@@ -156,11 +156,11 @@ struct BoundIridescentPlastic {
 #[derive(Debug, Clone, Copy)]
 struct Channel {
     eta: f64,
-    /// w_s.
+    /// `w_s`.
     specular: f64,
-    /// w_d/(π η² (1 − R_int)).
+    /// `w_d/(π η² (1 − R_int))`.
     diffuse: f64,
-    /// 2Φ per unit of cosθ_ti + cosθ_to.
+    /// 2Φ per unit of `cosθ_ti + cosθ_to`.
     double_phase: f64,
 }
 
@@ -178,8 +178,7 @@ impl Bsdf for BoundIridescentPlastic {
         let half = HalfVector::between(incoming, outgoing);
         let lobe = rough_plastic::lobe(&self.coat, &half, incoming, outgoing);
         for (value, channel) in values.iter_mut().zip(&self.channels) {
-            let reflected =
-                channel.specular * lobe * fresnel::dielectric(half.cos_facet, channel.eta).unpolarised();
+            let reflected = channel.specular * lobe * fresnel::dielectric(half.cos_facet, channel.eta).unpolarised();
             let transmitted = channel.diffuse * *value;
             let inside = |cosine: f64| (1.0 - (1.0 - cosine * cosine).max(0.0) / (channel.eta * channel.eta)).sqrt();
             let cosine = self.interference.cosine(channel.double_phase * (inside(incoming.z) + inside(outgoing.z)));

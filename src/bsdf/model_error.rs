@@ -87,6 +87,9 @@ pub enum ModelError {
         /// The name.
         name: String,
     },
+    /// Knots of the base in no order.
+    #[error("`base_knots_nm` must be wavelengths that rise, each once")]
+    UnsortedKnots,
     /// A period without layers.
     #[error("a period has no layers; list them in `period`, from the outside in, or leave the entry out")]
     EmptyPeriod,

@@ -5,20 +5,20 @@
 //! ```
 //!
 //! 0 where either direction is below the horizon. The first term is the reflection of [`super::MicrofacetInterface`]
-//! with Beckmann's distribution; in the second T is the rough interface's transmittance from outside and R_int the share
+//! with Beckmann's distribution; in the second T is the rough interface's transmittance from outside and `R_int` the share
 //! of diffuse light that it throws back inside (Jakob's rough plastic in Mitsuba, 2010; the second thesis, section 2.5,
-//! with R_int as in [`RoughInterface`](crate::optics::RoughInterface)). 1/(1 − R_int) is all that bounces
+//! with `R_int` as in [`RoughInterface`](crate::optics::RoughInterface)). `1/(1 − R_int)` is all that bounces
 //! between coat and base; 1/η² is the solid angle that widens when light leaves.
 //!
 //! | parameter | symbol | unit | default | range |
 //! | --- | --- | --- | --- | --- |
 //! | `roughness` | α | | 0.1 | 0.005 to 1 |
 //! | `eta`: index of the coat over that outside | η | | 1.56 (keratin in air) | 1.05 to 2.5 |
-//! | `specular`, shared or per channel | w_s | | 1 | 0 to 1 |
-//! | `diffuse`, shared or per channel: albedo of the base | w_d | | 0.5 | 0 to 1 |
+//! | `specular`, shared or per channel | `w_s` | | 1 | 0 to 1 |
+//! | `diffuse`, shared or per channel: albedo of the base | `w_d` | | 0.5 | 0 to 1 |
 //!
 //! Reciprocal. Never more than arrives comes back; what is missing, single scattering loses. Directional albedo at
-//! w_s = w_d = 1 and η 1.5, over inclinations of the light from 0 to 89°:
+//! `w_s = w_d = 1` and η 1.5, over inclinations of the light from 0 to 89°:
 //!
 //! | α | least | largest |
 //! | --- | --- | --- |
@@ -26,7 +26,7 @@
 //! | 0.3 | 0.857 | 0.891 |
 //! | 0.5 | 0.729 | 0.753 |
 //!
-//! T and R_int come from the table [`RoughTransmittance`], which keeps the second term within 0.5 % of exact.
+//! T and `R_int` come from the table [`RoughTransmittance`], which keeps the second term within 0.5 % of exact.
 //! [`Bsdf::evaluate_many`] differs from [`Bsdf::evaluate`] by 1e-5 of the value at most. Left out: light that the coat
 //! scatters twice, absorption in it, polarisation.
 
@@ -49,18 +49,18 @@ use crate::parameter::{Parameter, Spread};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum InternalReflection {
-    /// 1 − R_int: the base's colour acts once, whatever the number of bounces.
+    /// `1 − R_int`: the base's colour acts once, whatever the number of bounces.
     #[default]
     Linear,
-    /// 1 − w_d R_int: the base's colour acts at every bounce, so that dark colours become darker and purer.
+    /// `1 − w_d R_int`: the base's colour acts at every bounce, so that dark colours become darker and purer.
     Nonlinear,
-    /// 1 − R_d with R_d = 1 − T_d, T_d the diffuse transmittance from inside, as in the second thesis (equation 2.54):
+    /// `1 − R_d` with `R_d = 1 − T_d`, `T_d` the diffuse transmittance from inside, as in the second thesis (equation 2.54):
     /// what single scattering loses counts as thrown back, and the base is brighter on rough coats.
     Thesis,
 }
 
 impl InternalReflection {
-    /// 1/(π η² (1 − …)), times w_d: what T(θi) T(θo) is multiplied by.
+    /// `w_d/(π η² (1 − …))`: what T(θi) T(θo) is multiplied by.
     pub(super) fn diffuse_factor(self, eta: f64, alpha: f64, diffuse: f64) -> f64 {
         let remaining = match self {
             Self::Linear => 1.0 - RoughTransmittance::diffuse_reflectance(1.0 / eta, alpha),
@@ -207,9 +207,9 @@ struct BoundRoughPlastic {
     eta: f64,
     coat: Beckmann,
     transmittance: TransmittanceCurve,
-    /// w_s of each channel.
+    /// `w_s` of each channel.
     specular: Vec<f64>,
-    /// w_d/(π η² (1 − R_int)) of each channel.
+    /// `w_d/(π η² (1 − R_int))` of each channel.
     diffuse: Vec<f64>,
     /// What many pairs at a time need, made at the first of them.
     directions: OnceLock<DirectionTable>,

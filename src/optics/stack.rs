@@ -85,7 +85,7 @@ impl Wave {
         (Complex64::i() * medium.q * (self.wavenumber * thickness_nm)).exp()
     }
 
-    /// Powers from amplitudes: T_s = |t|² Re q/q₀, T_p = |t|² Re(n cosθ*)/q₀, both into the last medium.
+    /// Powers from amplitudes: T = |t|² Re q/q₀ for s and |t|² Re(n cosθ*)/q₀ for p, both into the last medium.
     pub(super) fn response(&self, last: Medium, s: Amplitudes, p: Amplitudes) -> Response {
         let entering = |amplitude: Complex64, last: f64| {
             // At grazing incidence t is 0 as q₀ is, and t²/q₀ with it.

@@ -25,13 +25,14 @@ fn layer(name: &str, material: MaterialChoice, thickness_nm: f64) -> DesignEntry
     DesignEntry::Layer(DesignLayer { name: name.to_owned(), material, thickness_nm })
 }
 
+/// Layers in air, on a substrate.
+fn in_air(layers: Vec<DesignEntry>, substrate: MaterialChoice) -> Design {
+    Design { layers, substrate, clear_coat: None, base_knots_nm: Vec::new() }
+}
+
 /// Keratin over bird melanin, as in a starling's barbule.
 fn cortex(thickness_nm: f64) -> Design {
-    Design {
-        layers: vec![layer("cortex", known("keratin"), thickness_nm)],
-        substrate: known("bird_melanin"),
-        clear_coat: None,
-    }
+    in_air(vec![layer("cortex", known("keratin"), thickness_nm)], known("bird_melanin"))
 }
 
 /// Default values of a model, with some of them replaced by name.
@@ -55,7 +56,7 @@ fn evaluate(model: &CoatedBase, values: &[f64], incoming: Direction, outgoing: D
 }
 
 fn index(name: &str, wavelength_nm: f64) -> Complex64 {
-    known_material(name).unwrap().dispersion.at(wavelength_nm)
+    known_material(name).expect("the material is known").dispersion.at(wavelength_nm)
 }
 
 /// In the mirror direction the half vector is the normal, and what is left of f is the film's reflectance.
@@ -100,7 +101,7 @@ fn plain_interface_is_fresnel() {
             Complex64::new(1.7, 0.2),
         ),
     ] {
-        let design = Design { layers: Vec::new(), substrate, clear_coat: None };
+        let design = in_air(Vec::new(), substrate);
         let model = CoatedBase::new(&design, &WAVELENGTHS_NM).unwrap();
         for cosine in [1.0, 0.7, 0.2, 0.01] {
             let mut found = [0.0; 11];
@@ -397,18 +398,14 @@ fn senseless_designs_are_refused() {
     let twice =
         Design { layers: vec![layer("a", known("keratin"), 50.0), layer("a", known("air"), 50.0)], ..cortex(300.0) };
     assert_eq!(refused(&twice, &[500.0]), ModelError::TwoLayers { name: "a".to_owned() });
-    let conflict =
-        Design { layers: vec![layer("a", own("wax", 1.4), 50.0)], substrate: own("wax", 1.5), clear_coat: None };
+    let conflict = in_air(vec![layer("a", own("wax", 1.4), 50.0)], own("wax", 1.5));
     assert_eq!(refused(&conflict, &[500.0]), ModelError::TwoMaterials { name: "wax".to_owned() });
-    let table = Design {
-        layers: Vec::new(),
-        substrate: MaterialChoice::Own(OwnMaterial {
-            name: "wax".to_owned(),
-            table: Some(vec![[400.0, 1.5, 0.0], [600.0, 1.45, 0.0]]),
-            ..OwnMaterial::default()
-        }),
-        clear_coat: None,
+    let wax = OwnMaterial {
+        name: "wax".to_owned(),
+        table: Some(vec![[400.0, 1.5, 0.0], [600.0, 1.45, 0.0]]),
+        ..OwnMaterial::default()
     };
+    let table = in_air(Vec::new(), MaterialChoice::Own(wax));
     let message = refused(&table, &[500.0, 650.0]).to_string();
     for part in ["wax", "400 to 600 nm", "650"] {
         assert!(message.contains(part), "{message}");

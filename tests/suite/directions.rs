@@ -41,7 +41,12 @@ pub(super) fn any_direction() -> impl Strategy<Value = Direction> {
 
 /// ∫ f |cosθo| dωo over the upper (or lower) half of the sphere, for light in the plane φ = 0 and a model of one channel
 /// that is even in φ: midpoints in both angles. In φ that is exact for smooth periodic functions, in θ of second order.
-pub(super) fn directional_albedo(bound: &dyn Bsdf, incoming: &Direction, above: bool, (polar, azimuthal): (u32, u32)) -> f64 {
+pub(super) fn directional_albedo(
+    bound: &dyn Bsdf,
+    incoming: &Direction,
+    above: bool,
+    (polar, azimuthal): (u32, u32),
+) -> f64 {
     let (d_theta, d_phi) = (FRAC_PI_2 / f64::from(polar), PI / f64::from(azimuthal));
     let mut sum = 0.0;
     let mut value = [f64::NAN];

@@ -194,8 +194,7 @@ fn film_states_its_largest_albedo() {
         let albedo = |normalised, interference| {
             let design = GranierHeidrichDesign { normalised, interference, ..Default::default() };
             let model = GranierHeidrich::new(&design, &[550.0]).unwrap();
-            let changes =
-                [("outer_exponent", exponent), ("inner_exponent", exponent), ("eta", 1.5), ("diffuse", 1.0)];
+            let changes = [("outer_exponent", exponent), ("inner_exponent", exponent), ("eta", 1.5), ("diffuse", 1.0)];
             format!("{:.2}", largest_albedo(&model, &values(&model, &changes)))
         };
         let row = format!(
@@ -215,7 +214,10 @@ fn bad_normals_get_a_sentence() {
     for found in [[0.0, 0.0, 0.0], [1.0, 0.0, -0.1], [f64::NAN, 0.0, 1.0], [f64::INFINITY, 0.0, 1.0]] {
         let design = GranierHeidrichDesign { outer_normal: NormalSource::Fixed(found), ..Default::default() };
         let message = GranierHeidrich::new(&design, &RGB_NM).unwrap_err().to_string();
-        assert!(message.starts_with("`outer_normal` is [") && message.contains("points out of the surface"), "{message}");
+        assert!(
+            message.starts_with("`outer_normal` is [") && message.contains("points out of the surface"),
+            "{message}"
+        );
         assert!(normal_from_rgb(found.map(|component| 0.5 * (component + 1.0))).is_none());
     }
     let typed: GranierHeidrichDesign =

@@ -9,9 +9,7 @@ use barbule::optics::RoughInterface;
 use barbule::optics::microfacet::Ggx;
 use proptest::prelude::*;
 
-use super::directions::{
-    RGB_NM, any_direction, any_direction_above, directional_albedo, evaluate, spherical, values,
-};
+use super::directions::{RGB_NM, any_direction, any_direction_above, directional_albedo, evaluate, spherical, values};
 use super::oracle::Oracle;
 
 fn interface(distribution: Distribution) -> MicrofacetInterface {
@@ -96,7 +94,7 @@ fn ggx_masking_fills_the_projected_area() {
 }
 
 proptest! {
-    /// f_r(i, o) = f_r(o, i); f_t(i → o)/η_o² = f_t(o → i)/η_i².
+    /// `f_r(i, o) = f_r(o, i)`; `f_t(i → o)/η_o² = f_t(o → i)/η_i²`.
     #[test]
     fn interface_is_reciprocal(
         roughness in 0.005..=1.0,

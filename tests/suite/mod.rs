@@ -1,7 +1,17 @@
+//! Table of contents.
+
 mod coated_base;
+mod colour;
+mod coverage;
+mod data;
 mod directions;
+mod engine;
 mod granier;
 mod microfacet;
+mod nist;
 mod optics;
 mod oracle;
+mod report;
 mod rough_plastic;
+mod tables;
+mod twins;

@@ -8,14 +8,15 @@ pub(super) struct Oracle {
 
 impl Oracle {
     pub(super) fn read(path: &str) -> Self {
-        let mut reader = csv::Reader::from_path(path).unwrap();
-        let names = reader.headers().unwrap().iter().map(str::to_owned).collect();
-        let rows = reader.records().map(|row| row.unwrap().iter().map(str::to_owned).collect()).collect();
+        let mut reader = csv::Reader::from_path(path).expect("the table is there");
+        let names = reader.headers().expect("the table has names").iter().map(str::to_owned).collect();
+        let rows =
+            reader.records().map(|row| row.expect("the row is text").iter().map(str::to_owned).collect()).collect();
         Self { names, rows }
     }
 
     pub(super) fn number(&self, row: usize, name: &str) -> f64 {
-        self.text(row, name).parse().unwrap()
+        self.text(row, name).parse().expect("the value is a number")
     }
 
     pub(super) fn text(&self, row: usize, name: &str) -> &str {

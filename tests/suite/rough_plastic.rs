@@ -53,7 +53,7 @@ fn diffuse_fractions_agree_with_their_tables() {
     });
 }
 
-/// Light that goes in comes out by the same way: T_int = T_ext/η² for diffuse light, outside the oracle's grid too.
+/// Light that goes in comes out by the same way: `T_int = T_ext/η²` for diffuse light, outside the oracle's grid too.
 #[test]
 fn diffuse_transmittance_is_reciprocal() {
     for (eta, alpha) in [(1.05, 0.005), (1.05, 1.0), (1.4, 0.03), (2.5, 0.005), (2.5, 0.6), (2.5, 1.0)] {
@@ -216,7 +216,7 @@ proptest! {
     }
 }
 
-/// White base under a white light: what comes back is R + T T_int/(1 − R_int), by quadrature that shares nothing with
+/// White base under a white light: what comes back is `R + T T_int/(1 − R_int)`, by quadrature that shares nothing with
 /// the scattering function but the definitions, and never more than arrives.
 #[test]
 fn rough_plastic_never_creates_light() {
@@ -255,12 +255,11 @@ fn iridescent(interference: Interference, wavelengths_nm: &[f64]) -> IridescentP
 fn iridescent_plastic_states_its_largest_albedo() {
     let docs = include_str!("../../src/bsdf/iridescent_plastic.rs");
     for alpha in [0.1, 0.3, 0.5] {
-        let [constructive, destructive] =
-            [Interference::Constructive, Interference::Destructive].map(|interference| {
-                let model = iridescent(interference, &[550.0]);
-                let changes = [("roughness", alpha), ("eta", 1.5), ("diffuse", 1.0)];
-                largest_albedo(&model, &values(&model, &changes))
-            });
+        let [constructive, destructive] = [Interference::Constructive, Interference::Destructive].map(|interference| {
+            let model = iridescent(interference, &[550.0]);
+            let changes = [("roughness", alpha), ("eta", 1.5), ("diffuse", 1.0)];
+            largest_albedo(&model, &values(&model, &changes))
+        });
         let row = format!("//! | {alpha} | {constructive:.2} | {destructive:.2} |");
         println!("{row}");
         assert!(docs.contains(&row), "the model's docs lack the row {row}");
@@ -293,7 +292,7 @@ proptest! {
         }
     }
 
-    /// Each channel is a model of its own, f_r and f_t of which are two rough plastics; their interference is written
+    /// Each channel is a model of its own, `f_r` and `f_t` of which are two rough plastics; their interference is written
     /// out here.
     #[test]
     fn iridescent_plastic_interferes_channel_by_channel(
@@ -333,8 +332,8 @@ proptest! {
     }
 }
 
-/// The three ways to sum the bounces, at one point of the oracle's grid: f_t goes as 1/(1 − R_int), 1/(1 − w_d R_int) and
-/// 1/T_int.
+/// The three ways to sum the bounces, at one point of the oracle's grid: `f_t` goes as `1/(1 − R_int)`, `1/(1 − w_d R_int)` and
+/// `1/T_int`.
 #[test]
 fn bounces_are_summed_as_asked() {
     let (r_int, t_int) = (0.5375340626, 0.408167204); // η 1.5, α 0.3 in rough_internal.csv

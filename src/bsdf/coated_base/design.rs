@@ -24,6 +24,17 @@ pub struct Design {
     /// of the coat itself is left out. Without this key the layers lie in air.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clear_coat: Option<f64>,
+    /// Wavelengths, nm, rising, between which the base's albedo runs straight: a pigment. Each has a parameter
+    /// `diffuse_albedo.<nm>`. Without this key the base is grey, with the one parameter `diffuse_albedo`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub base_knots_nm: Vec<f64>,
+}
+
+impl Design {
+    /// The same surface without its layers, a plain interface: the control that a film is compared with.
+    pub fn without_layers(&self) -> Self {
+        Self { layers: Vec::new(), ..self.clone() }
+    }
 }
 
 /// One entry in the list of layers: a layer, or layers that repeat.
@@ -62,7 +73,7 @@ pub struct DesignPeriod {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum MaterialChoice {
-    /// Name of a known material: keratin, bird_melanin, chitin, insect_melanin or air.
+    /// Name of a known material: `keratin`, `bird_melanin`, `chitin`, `insect_melanin` or `air`.
     Known(String),
     /// A material of your own.
     Own(OwnMaterial),

@@ -122,19 +122,19 @@ impl Channels {
         let of_one = |(material, (n, k)): (&VariableMaterial, &(Vec<f64>, Vec<f64>))| {
             let factor = |scale: Option<usize>| scale.map_or(1.0, |parameter| values[parameter]);
             match material.variation {
-                Variation::None => Permittivity::new(n.iter().copied().zip(k.iter().copied())),
+                Variation::None => Permittivity::new(n.iter().copied(), k.iter().copied()),
                 Variation::Constant { index, extinction } => {
-                    let value = (values[index], extinction.map_or(0.0, |parameter| values[parameter]));
-                    Permittivity::new(n.iter().map(|_| value))
+                    let (index, extinction) = (values[index], extinction.map_or(0.0, |parameter| values[parameter]));
+                    Permittivity::new(n.iter().map(|_| index), n.iter().map(|_| extinction))
                 }
                 Variation::Cauchy { a, b_nm2, extinction_scale } => {
                     let (a, b, factor) = (values[a], values[b_nm2], factor(extinction_scale));
                     let n = self.inverse_squares.iter().map(|inverse_square| a + b * inverse_square);
-                    Permittivity::new(n.zip(k.iter().map(|k| factor * k)))
+                    Permittivity::new(n, k.iter().map(|k| factor * k))
                 }
                 Variation::Correction { offset, scale, extinction_scale } => {
                     let (offset, scale, factor) = (values[offset], values[scale], factor(extinction_scale));
-                    Permittivity::new(n.iter().map(|n| scale * n + offset).zip(k.iter().map(|k| factor * k)))
+                    Permittivity::new(n.iter().map(|n| scale * n + offset), k.iter().map(|k| factor * k))
                 }
             }
         };
