@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::optics::elementary::sin_cos;
+
 /// How light from the outer surface and light from below it interfere.
 ///
 /// A thickness of 0 is not "off": there cos(2Φ) is 1 and the term is at its largest.
@@ -22,10 +24,10 @@ pub enum Interference {
 
 impl Interference {
     /// cos(2Φ), or what stands for it; 0 where there is no interference.
-    #[inline]
+    #[inline(always)]
     pub(super) fn cosine(self, double_phase: f64) -> f64 {
         match self {
-            Self::Film => double_phase.cos(),
+            Self::Film => sin_cos(double_phase).1,
             Self::Off => 0.0,
             Self::Constructive => 1.0,
             Self::Destructive => -1.0,

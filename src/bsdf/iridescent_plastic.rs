@@ -40,6 +40,7 @@ use super::channel_parameters::{ChannelParameter, Declarations};
 use super::interference::Interference;
 use super::rough_plastic::{self, HalfVector, InternalReflection};
 use super::{Bsdf, Direction, Model, ModelError};
+use crate::optics::elementary::sin_cos;
 use crate::optics::microfacet::Beckmann;
 use crate::optics::{RoughTransmittance, TransmittanceCurves, fresnel};
 use crate::parameter::{Parameter, Spread};
@@ -123,45 +124,39 @@ impl Model for IridescentPlastic {
 
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
         let (thickness_nm, roughness) = (values[self.thickness_nm], values[self.roughness]);
-        let etas: Vec<f64> = (0..self.wavelengths_nm.len()).map(|channel| self.eta.value(values, channel)).collect();
-        let channel = |(channel, (&eta, &wavelength_nm)): (usize, (&f64, &f64))| Channel {
-            eta,
-            specular: self.specular.value(values, channel),
-            diffuse: self.design.internal_reflection.diffuse_factor(
-                eta,
-                roughness,
-                self.diffuse.value(values, channel),
-            ),
-            double_phase: 2.0 * PI * eta * thickness_nm / wavelength_nm,
+        let of_channels = |parameter: ChannelParameter| {
+            (0..self.wavelengths_nm.len()).map(move |channel| parameter.value(values, channel))
         };
+        let eta: Vec<f64> = of_channels(self.eta).collect();
+        let double_phase = |(&eta, &wavelength_nm)| 2.0 * PI * eta * thickness_nm / wavelength_nm;
         Box::new(BoundIridescentPlastic {
             interference: self.design.interference,
             coat: Beckmann::new(roughness),
-            transmittances: RoughTransmittance::curves(&etas, roughness),
-            channels: etas.iter().zip(&self.wavelengths_nm).enumerate().map(channel).collect(),
+            transmittances: RoughTransmittance::curves(&eta, roughness),
+            specular: of_channels(self.specular).collect(),
+            diffuse: self
+                .design
+                .internal_reflection
+                .diffuse_factors(eta.iter().copied().zip(of_channels(self.diffuse)), roughness),
+            double_phase: eta.iter().zip(&self.wavelengths_nm).map(double_phase).collect(),
+            eta,
         })
     }
 }
 
-/// An iridescent rough plastic with its parameters given.
+/// An iridescent rough plastic with its parameters given; lists have one number a channel.
 #[derive(Debug)]
 struct BoundIridescentPlastic {
     interference: Interference,
     coat: Beckmann,
     transmittances: TransmittanceCurves,
-    channels: Vec<Channel>,
-}
-
-/// One channel of it.
-#[derive(Debug, Clone, Copy)]
-struct Channel {
-    eta: f64,
+    eta: Vec<f64>,
     /// `w_s`.
-    specular: f64,
+    specular: Vec<f64>,
     /// `w_d/(π η² (1 − R_int))`.
-    diffuse: f64,
+    diffuse: Vec<f64>,
     /// 2Φ per unit of `cosθ_ti + cosθ_to`.
-    double_phase: f64,
+    double_phase: Vec<f64>,
 }
 
 impl Bsdf for BoundIridescentPlastic {
@@ -170,19 +165,64 @@ impl Bsdf for BoundIridescentPlastic {
             values.fill(0.0);
             return;
         }
-        // Until the last step the values hold T(θi) T(θo).
-        values.fill(1.0);
-        self.transmittances.multiply(incoming.z, values);
-        self.transmittances.multiply(outgoing.z, values);
-
         let half = HalfVector::between(incoming, outgoing);
         let lobe = rough_plastic::lobe(&self.coat, &half, incoming, outgoing);
-        for (value, channel) in values.iter_mut().zip(&self.channels) {
-            let reflected = channel.specular * lobe * fresnel::dielectric(half.cos_facet, channel.eta).unpolarised();
-            let transmitted = channel.diffuse * *value;
-            let inside = |cosine: f64| (1.0 - (1.0 - cosine * cosine).max(0.0) / (channel.eta * channel.eta)).sqrt();
-            let cosine = self.interference.cosine(channel.double_phase * (inside(incoming.z) + inside(outgoing.z)));
-            *value = reflected + transmitted + 2.0 * cosine * (reflected * transmitted).sqrt();
+        pulp::Arch::new().dispatch(Channels {
+            film: self,
+            incoming,
+            outgoing,
+            lobe,
+            cos_facet: half.cos_facet,
+            values,
+        });
+    }
+}
+
+/// The loops over channels, in the form in which they are compiled once for each instruction set.
+struct Channels<'a> {
+    film: &'a BoundIridescentPlastic,
+    incoming: &'a Direction,
+    outgoing: &'a Direction,
+    lobe: f64,
+    cos_facet: f64,
+    values: &'a mut [f64],
+}
+
+impl pulp::NullaryFnOnce for Channels<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        // One loop for each kind of interference, so that none has to choose inside.
+        match self.film.interference {
+            Interference::Film => self.evaluate(|phase| sin_cos(phase).1),
+            Interference::Off => self.evaluate(|_| 0.0),
+            Interference::Constructive => self.evaluate(|_| 1.0),
+            Interference::Destructive => self.evaluate(|_| -1.0),
+        }
+    }
+}
+
+impl Channels<'_> {
+    #[inline(always)]
+    fn evaluate(self, cosine_of_phase: impl Fn(f64) -> f64) {
+        let Self { film, incoming, outgoing, lobe, cos_facet, values } = self;
+        // Until the last step the values hold T(θi) T(θo).
+        values.fill(1.0);
+        film.transmittances.multiply(incoming.z, values);
+        film.transmittances.multiply(outgoing.z, values);
+
+        let sine_squared = |cosine: f64| (1.0 - cosine * cosine).max(0.0);
+        let (sine_squared_i, sine_squared_o) = (sine_squared(incoming.z), sine_squared(outgoing.z));
+        let optics = film.eta.iter().zip(&film.double_phase);
+        let weights = film.specular.iter().zip(&film.diffuse);
+        for ((value, (&eta, double_phase)), (specular, diffuse)) in values.iter_mut().zip(optics).zip(weights) {
+            let reflected = specular * lobe * fresnel::dielectric(cos_facet, eta).unpolarised();
+            let transmitted = diffuse * *value;
+            let inside = |sine_squared: f64| (1.0 - sine_squared / (eta * eta)).sqrt();
+            let phase = double_phase * (inside(sine_squared_i) + inside(sine_squared_o));
+            let interference = 2.0 * cosine_of_phase(phase) * (reflected * transmitted).sqrt();
+            *value = reflected + transmitted + interference;
         }
     }
 }

@@ -60,14 +60,30 @@ pub enum InternalReflection {
 }
 
 impl InternalReflection {
-    /// `w_d/(π η² (1 − …))`: what T(θi) T(θo) is multiplied by.
-    pub(super) fn diffuse_factor(self, eta: f64, alpha: f64, diffuse: f64) -> f64 {
-        let remaining = match self {
-            Self::Linear => 1.0 - RoughTransmittance::diffuse_reflectance(1.0 / eta, alpha),
-            Self::Nonlinear => 1.0 - diffuse * RoughTransmittance::diffuse_reflectance(1.0 / eta, alpha),
-            Self::Thesis => RoughTransmittance::diffuse_transmittance(1.0 / eta, alpha),
+    /// What T(θi) T(θo) is multiplied by in each channel, `w_d/(π η² (1 − …))`, for a channel's index and `w_d`.
+    pub(super) fn diffuse_factors(self, channels: impl Iterator<Item = (f64, f64)>, alpha: f64) -> Vec<f64> {
+        // Most often all channels share their index; then the table is read once.
+        let mut last = (f64::NAN, f64::NAN);
+        let factor = |(eta, diffuse): (f64, f64)| {
+            if eta.to_bits() != last.0.to_bits() {
+                last = (eta, self.mean(eta, alpha));
+            }
+            let remaining = match self {
+                Self::Linear => 1.0 - last.1,
+                Self::Nonlinear => 1.0 - diffuse * last.1,
+                Self::Thesis => last.1,
+            };
+            diffuse / (PI * eta * eta * remaining)
         };
-        diffuse / (PI * eta * eta * remaining)
+        channels.map(factor).collect()
+    }
+
+    /// The mean over diffuse light from inside that the sum needs: `R_int` or `T_d`.
+    fn mean(self, eta: f64, alpha: f64) -> f64 {
+        match self {
+            Self::Linear | Self::Nonlinear => RoughTransmittance::diffuse_reflectance(1.0 / eta, alpha),
+            Self::Thesis => RoughTransmittance::diffuse_transmittance(1.0 / eta, alpha),
+        }
     }
 }
 
@@ -192,9 +208,9 @@ impl Model for RoughPlastic {
             coat: Beckmann::new(roughness),
             transmittance: RoughTransmittance::curve(eta, roughness),
             specular: of_channel(self.specular).collect(),
-            diffuse: of_channel(self.diffuse)
-                .map(|diffuse| self.internal_reflection.diffuse_factor(eta, roughness, diffuse))
-                .collect(),
+            diffuse: self
+                .internal_reflection
+                .diffuse_factors(of_channel(self.diffuse).map(|diffuse| (eta, diffuse)), roughness),
             directions: OnceLock::new(),
         })
     }

@@ -114,6 +114,13 @@ impl RoughTransmittance {
         let mut nodes = vec![0.0; count * channels];
         for (channel, &eta) in etas.iter().enumerate() {
             debug_assert!(eta >= 1.0, "light must come from the thinner side, found η = {eta}");
+            if channel > 0 && eta.to_bits() == etas[channel - 1].to_bits() {
+                // Most often all channels share their index.
+                for row in nodes.chunks_exact_mut(channels) {
+                    row[channel] = row[channel - 1];
+                }
+                continue;
+            }
             for (node, value) in Self::curve(eta, alpha).nodes.into_iter().enumerate() {
                 nodes[node * channels + channel] = value;
             }
@@ -190,6 +197,7 @@ pub struct TransmittanceCurves {
 
 impl TransmittanceCurves {
     /// Multiplies each channel's value by its T at 0 ≤ `cos_theta` ≤ 1.
+    #[inline(always)]
     pub fn multiply(&self, cos_theta: f64, values: &mut [f64]) {
         let (first, weights) = catmull_rom(self.scale.share(cos_theta), self.nodes.len() / self.channels);
         let start = first * self.channels;
