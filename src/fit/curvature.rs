@@ -3,9 +3,10 @@
 use nalgebra::{Cholesky, DMatrix, SVD};
 
 use super::differences::{Accuracy, Bounds, Differences};
+use super::least_squares::FULL;
 use super::objective::Objective;
 use super::outcome::Bound;
-use super::step::LinearModel;
+use super::step::{Damping, LinearModel};
 
 /// Singular values below this share of the largest are noise of the differences, not data.
 const RANK: f64 = 1e-9;
@@ -95,7 +96,8 @@ impl Curvature {
     /// The fall of the cost that a full step inside the bounds promises, as a share of the cost per row.
     pub(super) fn promise(&self, bounds: &Bounds, free: &[f64], cost: f64) -> f64 {
         let held: Vec<bool> = (0..free.len()).map(|j| bounds.keeps(j, free[j], self.gradient[j])).collect();
-        let step = self.model.step(free, bounds, &held, &vec![1.0; free.len()], 0.0);
+        let damping = Damping { factor: FULL, scale: &self.model.lengths() };
+        let step = self.model.step(free, bounds, &held, damping);
         #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
         let rows = self.rows.len() as f64;
         if cost > 0.0 { step.predicted / cost * rows } else { 0.0 }

@@ -85,14 +85,22 @@ struct Stencil {
     weights: &'static [f64],
 }
 
-const ONE_SIDED: Stencil = Stencil { offsets: &[1.0], weights: &[1.0] };
+static ONE_SIDED: Stencil = Stencil { offsets: &[1.0], weights: &[1.0] };
 /// Central differences at h, 2h and 4h, extrapolated twice: (64 D(h) − 20 D(2h) + D(4h))/45, error of order h⁶.
-const EXTRAPOLATED: Stencil = Stencil {
+static EXTRAPOLATED: Stencil = Stencil {
     offsets: &[1.0, -1.0, 2.0, -2.0, 4.0, -4.0],
     weights: &[32.0 / 45.0, -32.0 / 45.0, -5.0 / 45.0, 5.0 / 45.0, 1.0 / 360.0, -1.0 / 360.0],
 };
 /// At a bound, where there is one side only: forward differences through four points, error of order h⁴.
-const ONE_SIDED_LONG: Stencil = Stencil { offsets: &[1.0, 2.0, 3.0, 4.0], weights: &[4.0, -3.0, 4.0 / 3.0, -0.25] };
+static ONE_SIDED_LONG: Stencil = Stencil { offsets: &[1.0, 2.0, 3.0, 4.0], weights: &[4.0, -3.0, 4.0 / 3.0, -0.25] };
+
+/// One column to be filled: where it is not zero.
+struct Part<'a> {
+    j: usize,
+    step: f64,
+    stencil: &'static Stencil,
+    entries: &'a mut [f64],
+}
 
 /// Differences in one run: the steps found so far.
 #[derive(Debug, Clone)]
@@ -123,22 +131,22 @@ impl<'a> Differences<'a> {
         }
         jacobian.fill(0.0);
         let rows = objective.rows();
-        let steps: Vec<(f64, &Stencil)> =
+        let steps: Vec<(f64, &'static Stencil)> =
             (0..free.len()).map(|j| self.step(objective, bounds, free, j, accuracy)).collect();
-        let fill = |group: &Vec<usize>| self.group(objective, bounds, free, base, group, &steps);
-        let filled: Vec<(Vec<(usize, Vec<f64>)>, bool)> = if self.pattern.parallel {
-            self.pattern.groups.par_iter().map(fill).collect()
-        } else {
-            self.pattern.groups.iter().map(fill).collect()
+        let mut columns: Vec<Option<&mut [f64]>> = jacobian.chunks_exact_mut(rows).map(Some).collect();
+        let mut part = |&j: &usize| {
+            let column = columns[j].take().filter(|_| !bounds.holds(j))?;
+            let (step, stencil) = steps[j];
+            Some(Part { j, step, stencil, entries: &mut column[self.pattern.touched[j].clone()] })
         };
-        let mut complete = true;
-        for (columns, finite) in filled {
-            complete &= finite;
-            for (j, column) in columns {
-                let start = j * rows + self.pattern.touched[j].start;
-                jacobian[start..start + column.len()].copy_from_slice(&column);
-            }
-        }
+        let work: Vec<Vec<Part<'_>>> =
+            self.pattern.groups.iter().map(|group| group.iter().filter_map(&mut part).collect()).collect();
+        let fill = |parts: Vec<Part<'_>>| self.fill(objective, bounds, free, base, parts);
+        let complete = if self.pattern.parallel {
+            work.into_par_iter().map(fill).reduce(|| true, |a, b| a & b)
+        } else {
+            work.into_iter().map(fill).fold(true, |a, b| a & b)
+        };
         for (row, prior) in objective.priors.iter().enumerate() {
             for &(j, factor) in prior.terms.iter().filter(|term| !bounds.holds(term.0)) {
                 jacobian[j * rows + objective.readings + row] += objective.sigma * factor;
@@ -147,58 +155,54 @@ impl<'a> Differences<'a> {
         complete
     }
 
-    /// The touched parts of the columns of one group, and whether all evaluations were finite.
-    fn group(
+    /// Fills the columns of one group, whose parameters move together; false where an evaluation was not finite.
+    fn fill(
         &self,
         objective: &Objective<'_>,
         bounds: &Bounds,
         free: &[f64],
         base: &[f64],
-        group: &[usize],
-        steps: &[(f64, &Stencil)],
-    ) -> (Vec<(usize, Vec<f64>)>, bool) {
-        let mut columns: Vec<(usize, Vec<f64>)> = group
-            .iter()
-            .filter(|&&j| !bounds.holds(j))
-            .map(|&j| (j, vec![0.0; self.pattern.touched[j].len()]))
-            .collect();
+        mut parts: Vec<Part<'_>>,
+    ) -> bool {
         let mut values = vec![0.0; objective.residuals.parameters().len()];
-        let mut moved_rows = vec![0.0; objective.rows()];
-        let longest = columns.iter().map(|(j, _)| steps[*j].1.offsets.len()).max().unwrap_or(0);
-        let mut finite = true;
+        let mut rows = vec![0.0; objective.rows()];
+        let longest = parts.iter().map(|part| part.stencil.offsets.len()).max().unwrap_or(0);
+        let mut complete = true;
         for k in 0..longest {
             let mut moved = free.to_vec();
-            for (j, _) in &columns {
-                if let Some(offset) = steps[*j].1.offsets.get(k) {
-                    moved[*j] = (free[*j] + offset * steps[*j].0).clamp(bounds.lower[*j], bounds.upper[*j]);
+            for part in &parts {
+                if let Some(offset) = part.stencil.offsets.get(k) {
+                    let aim = free[part.j] + offset * part.step;
+                    moved[part.j] = aim.clamp(bounds.lower[part.j], bounds.upper[part.j]);
                 }
             }
-            if !objective.evaluate(&moved, &mut values, &mut moved_rows) {
-                finite = false;
+            if !objective.evaluate(&moved, &mut values, &mut rows) {
+                complete = false;
                 continue;
             }
-            for (j, column) in &mut columns {
-                let Some(weight) = steps[*j].1.weights.get(k) else { continue };
+            for part in &mut parts {
+                let Some(&weight) = part.stencil.weights.get(k) else { continue };
                 // The step as it was really made, after rounding.
-                let made = (moved[*j] - free[*j]) / steps[*j].1.offsets[k];
-                let range = self.pattern.touched[*j].clone();
-                for ((value, &there), &here) in column.iter_mut().zip(&moved_rows[range.clone()]).zip(&base[range]) {
-                    *value += weight * (there - here) / made;
+                let made = (moved[part.j] - free[part.j]) / part.stencil.offsets[k];
+                let factor = if made == 0.0 { 0.0 } else { weight / made };
+                let range = self.pattern.touched[part.j].clone();
+                for ((entry, there), here) in part.entries.iter_mut().zip(&rows[range.clone()]).zip(&base[range]) {
+                    *entry += factor * (there - here);
                 }
             }
         }
-        (columns, finite)
+        complete
     }
 
     /// Step and stencil of parameter `j`, inside the bounds.
-    fn step<'s>(
+    fn step(
         &self,
         objective: &Objective<'_>,
         bounds: &Bounds,
         free: &[f64],
         j: usize,
         accuracy: Accuracy,
-    ) -> (f64, &'s Stencil) {
+    ) -> (f64, &'static Stencil) {
         let (below, above) = (free[j] - bounds.lower[j], bounds.upper[j] - free[j]);
         let size = self.size(objective, free, j);
         match accuracy {

@@ -5,7 +5,10 @@
 //! From a point x the rows are replaced by their linear model, and the step δ minimises ‖J·δ + r‖² + λ‖D·δ‖² inside the
 //! bounds (Levenberg 1944, Marquardt 1963), D holding the lengths of J's columns so that no unit of a parameter matters.
 //! The damping λ follows the ratio of true to predicted fall (Nielsen 1999). Steps come from a QR factorisation of J, not
-//! from JᵀJ, whose condition number is the square. The cost is ‖r‖², not half of it.
+//! from Jᵀ·J, whose condition number is the square. The cost is ‖r‖², not half of it.
+//!
+//! A damped step is bent towards where the rows bend, or refused where they bend too much (geodesic acceleration), and
+//! stretched where the cost falls faster than promised, as it does far from zero residuals.
 //!
 //! Bounds are kept by an active set: a parameter on a bound whose gradient points outwards is held, the others move as if
 //! it were fixed, and it is released when its gradient turns. Nothing is ever evaluated outside the bounds.
@@ -24,7 +27,7 @@
 //!
 //! # How it reduces to Gauss–Newton
 //!
-//! Without bounds and with λ = 0; a linear problem is solved by its first settled step.
+//! Without bounds and with λ = 0; such a step is taken once it promises next to nothing. A linear problem is solved by its first step to some seven digits, and by its first settled one to all.
 //!
 //! # How it fails, and what you then get
 //!
@@ -38,16 +41,16 @@
 //! # References
 //!
 //! Levenberg 1944, Quart. Appl. Math. 2, 164. Marquardt 1963, J. SIAM 11, 431. Nielsen 1999, IMM-REP-1999-05.
-//! Moré 1978, Lecture Notes in Mathematics 630, 105 (column scaling).
+//! Transtrum & Sethna 2012, arXiv:1201.5885. Moré 1978, Lecture Notes in Mathematics 630, 105 (column scaling).
 
 use argmin::core::{Error, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus};
 use argmin::kv;
 use nalgebra::DVector;
 
 use super::differences::{Accuracy, Bounds, Differences};
-use super::objective::Objective;
+use super::objective::{Objective, Point};
 use super::outcome::StopReason;
-use super::step::{LinearModel, Step};
+use super::step::{Damping, LinearModel, Step};
 
 /// State that argmin carries: the free vector and its cost.
 pub(super) type LocalState = IterState<DVector<f64>, (), (), (), (), f64>;
@@ -63,6 +66,8 @@ pub(super) enum Finish {
 
 /// λ at the beginning: nearly Gauss–Newton, and soon raised where that is too bold.
 const FIRST_DAMPING: f64 = 1e-4;
+/// λ of a full step: nothing to what the readings determine, and enough to leave alone what they do not.
+pub(super) const FULL: f64 = 1e-14;
 /// Beyond this λ a step is lost in rounding.
 const LAST_DAMPING: f64 = 1e24;
 /// Promise, per row, below which travelling ends.
@@ -70,8 +75,6 @@ const SETTLING: f64 = 1e-5;
 
 /// A change of a parameter by its own size is damped at least as much as this share of the rows' length.
 const RELATIVE_CHANGE: f64 = 0.3;
-/// A step that promises more than this share of the cost goes far enough to be probed for its bend.
-const FAR: f64 = 0.0;
 /// Share of a step at which the rows are probed for their bend.
 const PROBE: f64 = 0.1;
 /// A step whose bend is longer than this share of it leaves the region in which the linear model is any guide
@@ -155,60 +158,46 @@ impl<'a> LeastSquares<'a> {
 
     /// Makes the damping see at least relative changes: where a column vanishes (an exponential that has died out), its
     /// length alone would let its parameter run away to where nothing brings it back.
-    fn limit_relative_change(&mut self, objective: &Objective<'_>, free: &[f64], cost: f64) {
-        for ((scale, x), parameter) in self.scale.iter_mut().zip(free).zip(&objective.mapping.free) {
-            *scale = scale.max(RELATIVE_CHANGE * cost.sqrt() / x.abs().max(parameter.scale));
+    fn limit_relative_change(&mut self, objective: &Objective<'_>, point: &Point) {
+        for ((scale, x), parameter) in self.scale.iter_mut().zip(&point.free).zip(&objective.mapping.free) {
+            *scale = scale.max(RELATIVE_CHANGE * point.cost.sqrt() / x.abs().max(parameter.scale));
         }
     }
 
     /// One iteration: linearise, then shorten the step until it helps.
-    fn iterate(&mut self, objective: &Objective<'_>, free: &mut Vec<f64>, cost: &mut f64) {
-        let model = self.linearise(objective, free);
-        let lengths = model.lengths();
-        for (scale, &length) in self.scale.iter_mut().zip(&lengths) {
+    fn iterate(&mut self, objective: &Objective<'_>, point: &mut Point) {
+        let model = self.linearise(objective, &point.free);
+        for (scale, &length) in self.scale.iter_mut().zip(&model.lengths()) {
             *scale = if length > 0.0 { length } else { 1.0 };
         }
-        self.limit_relative_change(objective, free, *cost);
+        self.limit_relative_change(objective, point);
         let gradient = model.gradient();
-        let held: Vec<bool> = (0..free.len()).map(|j| self.bounds.keeps(j, free[j], gradient[j])).collect();
-        let full = model.step(free, &self.bounds, &held, &self.scale, 0.0);
-        #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
-        let promise = full.predicted / *cost * self.rows.len() as f64;
-        if *cost == 0.0 || held.iter().all(|&held| held) {
+        let held: Vec<bool> = (0..point.free.len()).map(|j| self.bounds.keeps(j, point.free[j], gradient[j])).collect();
+        if point.cost == 0.0 || held.iter().all(|&held| held) {
             self.stop = Some(StopReason::Converged);
             return;
         }
+        let full = model.step(&point.free, &self.bounds, &held, Damping { factor: FULL, scale: &self.scale });
+        #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
+        let promise = full.predicted / point.cost * self.rows.len() as f64;
         match (self.finish, self.accuracy) {
-            (Finish::Travelled(enough), _) if promise <= enough => {
-                self.stop = Some(StopReason::Converged);
-                return;
-            }
-            (Finish::Settled, Accuracy::Travel) if promise <= SETTLING => {
-                self.accuracy = Accuracy::Settled;
-                return;
-            }
-            (Finish::Settled, Accuracy::Settled) if promise <= SETTLING => {
-                if self.settle(objective, free, cost, &full) {
-                    return;
-                }
-            }
-            _ => {}
+            (Finish::Travelled(enough), _) if promise <= enough => self.stop = Some(StopReason::Converged),
+            (Finish::Settled, Accuracy::Travel) if promise <= SETTLING => self.accuracy = Accuracy::Settled,
+            (Finish::Settled, Accuracy::Settled) if promise <= SETTLING && self.settle(objective, point, &full) => {}
+            _ => self.descend(objective, point, &model, &held),
         }
-        self.descend(objective, free, cost, &model, &held);
     }
 
     /// A full step near the minimum, or the end; false where a full step makes the cost worse than rounding can.
-    fn settle(&mut self, objective: &Objective<'_>, free: &mut Vec<f64>, cost: &mut f64, step: &Step) -> bool {
+    fn settle(&mut self, objective: &Objective<'_>, point: &mut Point, step: &Step) -> bool {
         let relative = |(x, change): (&f64, &f64)| change.abs() / x.abs().max(f64::MIN_POSITIVE);
-        let size = free.iter().zip(&step.change).map(relative).fold(0.0, f64::max);
+        let size = point.free.iter().zip(&step.change).map(relative).fold(0.0, f64::max);
         if size <= 4.0 * f64::EPSILON || self.idle >= 3 {
             self.stop = Some(StopReason::Converged);
             return true;
         }
-        let aim = step.aim(free, &self.bounds);
-        let finite = objective.evaluate(&aim, &mut self.values, &mut self.trial);
-        let there = if finite { objective.cost(&self.trial) } else { f64::INFINITY };
-        if there > *cost * (1.0 + 1e-9) {
+        let there = self.evaluate(objective, step.aim(&point.free, &self.bounds));
+        if there.cost > point.cost * (1.0 + 1e-9) {
             return false;
         }
         if size < 0.9 * self.smallest {
@@ -216,47 +205,35 @@ impl<'a> LeastSquares<'a> {
         } else {
             self.idle += 1;
         }
-        std::mem::swap(&mut self.rows, &mut self.trial);
-        *free = aim;
-        *cost = there;
+        self.accept(point, there);
         true
     }
 
     /// Damped steps, shorter and shorter, until one lowers the cost.
-    fn descend(
-        &mut self,
-        objective: &Objective<'_>,
-        free: &mut Vec<f64>,
-        cost: &mut f64,
-        model: &LinearModel,
-        held: &[bool],
-    ) {
+    fn descend(&mut self, objective: &Objective<'_>, point: &mut Point, model: &LinearModel, held: &[bool]) {
         loop {
             if objective.control.interrupted() {
                 self.stop = Some(StopReason::Cancelled);
                 return;
             }
-            let mut step = model.step(free, &self.bounds, held, &self.scale, self.damping);
-            if step.predicted > FAR * *cost && !self.bend(objective, free, model, &mut step) {
-                if !self.shorten() {
-                    return self.exhausted();
+            let damping = Damping { factor: self.damping, scale: &self.scale };
+            let mut step = model.step(&point.free, &self.bounds, held, damping);
+            if self.bend(objective, &point.free, model, &mut step) {
+                let there = self.evaluate(objective, step.aim(&point.free, &self.bounds));
+                let ratio = (point.cost - there.cost) / step.predicted;
+                if there.cost < point.cost && ratio > 1e-4 {
+                    self.helpful = self.damping;
+                    self.damping *= (1.0 - (2.0 * ratio.min(1.0) - 1.0).powi(3)).max(1.0 / 3.0);
+                    self.damping = self.damping.max(FIRST_DAMPING * 1e-16);
+                    self.growth = 2.0;
+                    let foot = point.clone();
+                    self.accept(point, there);
+                    return self.stretch(objective, &foot, point, model, &step);
                 }
-                continue;
             }
-            let aim = step.aim(free, &self.bounds);
-            let finite = aim != *free && objective.evaluate(&aim, &mut self.values, &mut self.trial);
-            let there = if finite { objective.cost(&self.trial) } else { f64::INFINITY };
-            let ratio = (*cost - there) / step.predicted;
-            if there < *cost && ratio > 1e-4 {
-                std::mem::swap(&mut self.rows, &mut self.trial);
-                let (foot, before) = (std::mem::replace(free, aim), std::mem::replace(cost, there));
-                self.helpful = self.damping;
-                self.damping *= (1.0 - (2.0 * ratio.min(1.0) - 1.0).powi(3)).max(1.0 / 3.0);
-                self.damping = self.damping.max(1e-20);
-                self.growth = 2.0;
-                return self.stretch(objective, free, cost, &foot, before, &step.change, model.slope(&step.change));
-            }
-            if !self.shorten() {
+            self.damping *= self.growth;
+            self.growth *= 2.0;
+            if self.damping > LAST_DAMPING {
                 return self.exhausted();
             }
         }
@@ -268,48 +245,51 @@ impl<'a> LeastSquares<'a> {
     fn stretch(
         &mut self,
         objective: &Objective<'_>,
-        free: &mut Vec<f64>,
-        cost: &mut f64,
-        foot: &[f64],
-        before: f64,
-        change: &[f64],
-        slope: f64,
+        foot: &Point,
+        point: &mut Point,
+        model: &LinearModel,
+        step: &Step,
     ) {
-        let bend = *cost - before - slope;
+        let slope = model.slope(&step.change);
+        let bend = point.cost - foot.cost - slope;
         let factor = if bend > 0.0 { (-0.5 * slope / bend).min(MOST_STRETCH) } else { MOST_STRETCH };
         if factor < LEAST_STRETCH {
             return;
         }
-        let aim: Vec<f64> = (0..free.len())
-            .map(|j| (foot[j] + factor * change[j]).clamp(self.bounds.lower[j], self.bounds.upper[j]))
-            .collect();
-        if aim != *free && objective.evaluate(&aim, &mut self.values, &mut self.trial) {
-            let there = objective.cost(&self.trial);
-            if there < *cost {
-                std::mem::swap(&mut self.rows, &mut self.trial);
-                (*free, *cost) = (aim, there);
-            }
+        let aim = (0..foot.free.len())
+            .map(|j| (foot.free[j] + factor * step.change[j]).clamp(self.bounds.lower[j], self.bounds.upper[j]));
+        let there = self.evaluate(objective, aim.collect());
+        if there.cost < point.cost {
+            self.accept(point, there);
         }
-    }
-
-    /// Raises the damping; false when it has no more use.
-    fn shorten(&mut self) -> bool {
-        self.damping *= self.growth;
-        self.growth *= 2.0;
-        self.damping <= LAST_DAMPING
     }
 
     /// Bends the step where the rows do; false where they bend too much for a step of this length.
     fn bend(&mut self, objective: &Objective<'_>, free: &[f64], model: &LinearModel, step: &mut Step) -> bool {
-        let probe: Vec<f64> = free.iter().zip(&step.change).map(|(x, change)| x + PROBE * change).collect();
+        let probe: Vec<f64> = (0..free.len())
+            .map(|j| (free[j] + PROBE * step.change[j]).clamp(self.bounds.lower[j], self.bounds.upper[j]))
+            .collect();
         if !objective.evaluate(&probe, &mut self.values, &mut self.trial) {
             return false;
         }
         objective.transform(&mut self.trial);
         self.here.copy_from_slice(&self.rows);
         objective.transform(&mut self.here);
-        let bend = model.bend(step, &self.jacobian, &self.here, &mut self.trial, PROBE, &self.scale, self.damping);
-        bend <= MOST_BEND
+        let damping = Damping { factor: self.damping, scale: &self.scale };
+        model.bend(step, &self.jacobian, &self.here, &mut self.trial, PROBE, damping) <= MOST_BEND
+    }
+
+    /// Evaluates a trial point; what is not finite costs infinity.
+    fn evaluate(&mut self, objective: &Objective<'_>, free: Vec<f64>) -> Point {
+        let finite = objective.evaluate(&free, &mut self.values, &mut self.trial);
+        let cost = if finite { objective.cost(&self.trial) } else { f64::INFINITY };
+        Point { free, cost }
+    }
+
+    /// Moves to the trial point just evaluated.
+    fn accept(&mut self, point: &mut Point, there: Point) {
+        std::mem::swap(&mut self.rows, &mut self.trial);
+        *point = there;
     }
 
     /// No step helped: with better derivatives one may; with the best ones the solver has stalled.
@@ -349,18 +329,18 @@ impl<'o> Solver<&'o Objective<'o>, LocalState> for LeastSquares<'_> {
         problem: &mut Problem<&'o Objective<'o>>,
         mut state: LocalState,
     ) -> Result<(LocalState, Option<KV>), Error> {
-        let mut cost = state.get_cost();
-        let mut free: Vec<f64> = state.take_param().unwrap_or_default().data.into();
+        let free: Vec<f64> = state.take_param().unwrap_or_default().data.into();
+        let mut point = Point { free, cost: state.get_cost() };
         problem.problem("iteration", |objective| {
             if objective.control.interrupted() {
                 self.stop = Some(StopReason::Cancelled);
             } else {
-                self.iterate(objective, &mut free, &mut cost);
+                self.iterate(objective, &mut point);
             }
             Ok(())
         })?;
         let log = kv!("damping" => self.damping;);
-        Ok((state.param(DVector::from_vec(free)).cost(cost), Some(log)))
+        Ok((state.param(DVector::from_vec(point.free)).cost(point.cost), Some(log)))
     }
 
     fn terminate(&mut self, _state: &LocalState) -> TerminationStatus {

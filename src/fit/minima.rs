@@ -1,12 +1,12 @@
 //! Which of the solvers' ends are one minimum, and how much each minimum weighs.
 //!
-//! Two ends are one minimum where they differ by less than one standard error: √(Δᵀ JᵀJ Δ)/σ < 1 with the Jacobian of the
+//! Two ends are one minimum where they differ by less than one standard error: ‖J·Δ‖/σ < 1 with the Jacobian of the
 //! better one. Neither units nor correlations matter to that measure.
 //!
 //! The weight is Laplace's approximation to the posterior mass of a minimum. With σ known, exp(−χ²/2) around a minimum is
 //! a Gaussian of covariance C = (JᵀJ)⁻¹ and its mass is exp(−χ²/2)·(2π)^{p/2}·√det C; priors are rows of χ². With σ
 //! unknown and its logarithm as likely anywhere as elsewhere (Jeffreys), integrating over σ leaves RSS^{−N/2}, whose own
-//! Gaussian has C = (RSS/N)(JᵀJ)⁻¹ since ∂²(N/2 · ln RSS) = N/RSS · JᵀJ. N is then the effective number of readings
+//! Gaussian has C = (RSS/N)(JᵀJ)⁻¹ since ∂²(N/2 · ln RSS) = (N/RSS)·(Jᵀ·J). N is then the effective number of readings
 //! of the best minimum where their correlation is significant: neighbouring readings that err together are not as many
 //! witnesses. Where a width exceeds the box it is cut there. A parameter on a bound contributes the mass of the density
 //! that falls from the bound inwards, exp(−g·x − h·x²/2), in place of a Gaussian's √(2π/h): half of it where the gradient g
@@ -53,7 +53,7 @@ pub(super) enum Likelihood {
     },
 }
 
-/// ln of the weight of a minimum, up to a constant that all share.
+/// ln of the weight of a minimum under an even prior, up to a constant that all share.
 pub(super) fn ln_weight(cost: f64, curvature: &Curvature, ranges: &[f64], likelihood: Likelihood) -> f64 {
     let (ln_height, sigma) = match likelihood {
         Likelihood::Known => (-0.5 * cost, 1.0),

@@ -34,3 +34,4 @@ pub use outcome::{
     StopReason, TracePoint,
 };
 pub use residuals::Residuals;
+pub use warnings::misfit;

@@ -25,6 +25,8 @@ const MOST_NODES: usize = 2000;
 /// Nodes of one scan that hand their values on from one to the next; the same for any number of threads.
 const CHUNK: usize = 8;
 
+/// Most iterations at one node of a scan.
+const NODE: u64 = 8;
 /// Most iterations of a start on the coarse problem.
 const SCREENING: u64 = 30;
 /// Most iterations on the full problem of a minimum that weighs nothing.
@@ -98,6 +100,8 @@ fn by_least_squares(objective: &Objective<'_>, pattern: &Pattern, settings: &Set
     let bounds = all_bounds(objective);
     let coarse = if settings.starts > 1 { objective.residuals.coarse() } else { None };
     let screen = coarse.map(|residuals| objective.on(residuals));
+    // Too few rows would make minima where there are none.
+    let screen = screen.filter(|screen| screen.rows() >= 3 * objective.mapping.free.len());
     let screen_pattern = screen.as_ref().map(|screen| Pattern::new(screen, false));
     let (screening, screening_pattern) = match (&screen, &screen_pattern) {
         (Some(screen), Some(pattern)) => (screen, pattern),
@@ -113,7 +117,7 @@ fn by_least_squares(objective: &Objective<'_>, pattern: &Pattern, settings: &Set
         }
     }
 
-    let iterations = settings.max_iterations.min(if coarse.is_some() { SCREENING } else { u64::MAX });
+    let iterations = settings.max_iterations.min(if screen.is_some() { SCREENING } else { u64::MAX });
     let run = |start: &Vec<f64>| {
         let finish = Finish::Travelled(1e-3);
         least_squares(screening, Differences::new(screening_pattern), &bounds, start, finish, iterations)
@@ -125,7 +129,7 @@ fn by_least_squares(objective: &Objective<'_>, pattern: &Pattern, settings: &Set
     let lowest = candidates.first().map_or(f64::INFINITY, |candidate| candidate.cost);
     let finish = |candidate: &Found| {
         // What weighs nothing on the coarse problem is listed, but need not be known to the last digit.
-        let (promise, iterations) = if coarse.is_none() || matters(screening, lowest, candidate) {
+        let (promise, iterations) = if screen.is_none() || matters(screening, lowest, candidate) {
             (1e-6, settings.max_iterations)
         } else {
             (1e-2, settings.max_iterations.min(LISTING))
@@ -225,19 +229,20 @@ fn profile(objective: &Objective<'_>, pattern: &Pattern, bounds: &Bounds, positi
     #[expect(clippy::cast_precision_loss, reason = "a number of nodes is small")]
     let node = |k: usize| lower + (upper - lower) * (k as f64 / (nodes - 1) as f64);
     let chunks: Vec<usize> = (0..nodes).step_by(CHUNK).collect();
+    // Each node begins where the last one ended, and anew: a chain alone would carry one wrong turn on to its end.
     let run = |&first: &usize| {
-        let mut start = objective.mapping.start();
-        let mut points = Vec::with_capacity(CHUNK);
+        let fresh = objective.mapping.start();
+        let mut points: Vec<Point> = Vec::with_capacity(CHUNK);
         for k in first..(first + CHUNK).min(nodes) {
-            start[position] = node(k);
             let mut held = bounds.clone();
             (held.lower[position], held.upper[position]) = (node(k), node(k));
-            let (finish, iterations) = (Finish::Travelled(1e-2), if k == first { 20 } else { 6 });
-            let end = least_squares(objective, Differences::new(pattern), &held, &start, finish, iterations);
-            if let Some(end) = end {
-                start.clone_from(&end.free);
-                points.push(Point { free: end.free, cost: end.cost });
-            }
+            let last = points.last().map(|point| point.free.clone());
+            let ends = last.into_iter().chain([fresh.clone()]).filter_map(|mut start| {
+                start[position] = node(k);
+                least_squares(objective, Differences::new(pattern), &held, &start, Finish::Travelled(1e-2), NODE)
+            });
+            let lowest = ends.min_by(|a, b| a.cost.total_cmp(&b.cost));
+            points.extend(lowest.map(|end| Point { free: end.free, cost: end.cost }));
         }
         points
     };

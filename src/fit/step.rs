@@ -15,6 +15,13 @@ pub(super) struct LinearModel {
     heads: Vec<f64>,
 }
 
+/// λ, and what it measures each parameter by.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Damping<'a> {
+    pub(super) factor: f64,
+    pub(super) scale: &'a [f64],
+}
+
 /// A step and what the linear model says of it.
 #[derive(Debug, Clone)]
 pub(super) struct Step {
@@ -41,16 +48,7 @@ impl LinearModel {
     /// Factorises a Jacobian (column-major), which is spoilt, as are the rows.
     pub(super) fn new(jacobian: &mut [f64], rows: &mut [f64]) -> Self {
         let (count, size) = (rows.len(), jacobian.len() / rows.len());
-        if count < size {
-            // Fewer rows than parameters: rows of zeros change nothing and make the matrix tall.
-            let mut tall = vec![0.0; size * size];
-            let mut right = vec![0.0; size];
-            right[..count].copy_from_slice(rows);
-            for (column, wide) in tall.chunks_exact_mut(size).zip(jacobian.chunks_exact(count)) {
-                column[..count].copy_from_slice(wide);
-            }
-            return Self::new(&mut tall, &mut right);
-        }
+        debug_assert!(count >= size, "{count} rows cannot determine {size} parameters");
         let heads = triangularise(jacobian, count, rows);
         let mut triangle = vec![0.0; size * size];
         for j in 0..size {
@@ -74,44 +72,77 @@ impl LinearModel {
         self.triangle.chunks_exact(self.size).map(|column| dot(column, &self.right)).collect()
     }
 
-    /// Minimises ‖R·δ + q‖² + damping·Σ(scaleⱼδⱼ)² within the bounds, the `held` parameters staying where they are.
+    /// Minimises ‖R·δ + q‖² + λ·Σ(scaleⱼδⱼ)² within the bounds, beginning with the `held` parameters where they are.
     ///
-    /// Parameters that would leave the box are put on its face and the others solved again, until none leaves: at most
-    /// as many rounds as there are parameters. This is the active set's own step, where clamping the unbounded one
-    /// would leave the others aimed at a point that is not reached.
-    pub(super) fn step(&self, free: &[f64], bounds: &Bounds, held: &[bool], scale: &[f64], damping: f64) -> Step {
+    /// This is the active-set method for bounded linear least squares (Stark & Parker 1995): on each face of the box the
+    /// unbounded solution is aimed at; what it meets on the way is put on its bound; where the face's own minimum is
+    /// reached, the parameter that most wants back inside is released. The sum falls at every turn, so that no face comes
+    /// twice. Clamping the unbounded solution instead would leave the others aimed at a point that is not reached.
+    pub(super) fn step(&self, free: &[f64], bounds: &Bounds, held: &[bool], damping: Damping<'_>) -> Step {
         let size = self.size;
         let mut change = vec![0.0; size];
-        let mut settled = held.to_vec();
         let mut landing = vec![None; size];
-        let open = loop {
+        let mut settled = held.to_vec();
+        // A generous limit: rounding could make two faces take turns.
+        for _ in 0..8 * size + 8 {
             let open: Vec<usize> = (0..size).filter(|&j| !settled[j]).collect();
-            let solution = self.solve(&open, &self.pull(&change, &settled), scale, damping);
-            let mut left = false;
-            for (&j, &value) in open.iter().zip(&solution) {
-                let aim = free[j] + value;
-                if aim < bounds.lower[j] || aim > bounds.upper[j] {
-                    let bound = if aim < bounds.lower[j] { bounds.lower[j] } else { bounds.upper[j] };
-                    change[j] = bound - free[j];
-                    landing[j] = Some(bound);
+            let aim = self.solve(&open, &self.pull(&change, &settled), damping);
+            let bound = |j: usize, aim: f64| if aim < 0.0 { bounds.lower[j] } else { bounds.upper[j] };
+            let way = |j: usize, aim: f64, change: f64| {
+                let outside = free[j] + aim < bounds.lower[j] || free[j] + aim > bounds.upper[j];
+                if outside { ((bound(j, aim) - free[j] - change) / (aim - change)).max(0.0) } else { f64::INFINITY }
+            };
+            let ways: Vec<f64> = open.iter().zip(&aim).map(|(&j, &aim)| way(j, aim, change[j])).collect();
+            let share = ways.iter().copied().fold(1.0, f64::min);
+            for ((&j, &aim), &way) in open.iter().zip(&aim).zip(&ways) {
+                change[j] += share * (aim - change[j]);
+                if way <= share {
+                    landing[j] = Some(bound(j, aim));
+                    change[j] = bound(j, aim) - free[j];
                     settled[j] = true;
-                    left = true;
                 }
             }
-            if !left {
-                for (&j, &value) in open.iter().zip(&solution) {
-                    change[j] = value;
-                }
-                break open;
+            if ways.iter().any(|&way| way <= share) {
+                continue;
             }
-        };
+            let places: Vec<f64> = (0..size).map(|j| landing[j].unwrap_or(free[j])).collect();
+            match self.wants_back(&places, bounds, &change, &settled, damping) {
+                Some(j) => (settled[j], landing[j]) = (false, None),
+                None => break,
+            }
+        }
+        let open = (0..size).filter(|&j| !settled[j]).collect();
         let predicted = self.fall(&change);
         Step { change, landing, predicted, open }
     }
 
+    /// The settled parameter, at these places, whose release lowers the sum fastest, if any does.
+    fn wants_back(
+        &self,
+        places: &[f64],
+        bounds: &Bounds,
+        change: &[f64],
+        settled: &[bool],
+        damping: Damping<'_>,
+    ) -> Option<usize> {
+        let mut rows = self.image(change);
+        rows.iter_mut().zip(&self.right).for_each(|(row, right)| *row += right);
+        let pull = |j: usize| {
+            let column = &self.triangle[j * self.size..(j + 1) * self.size];
+            let slope = dot(column, &rows) + damping.factor * damping.scale[j] * damping.scale[j] * change[j];
+            let length = dot(column, column).sqrt();
+            // Rounding of a sum of products of this size is no slope.
+            let inward = slope.abs() > 1e-13 * length * dot(&self.right, &self.right).sqrt()
+                && !bounds.keeps(j, places[j], slope);
+            if inward { slope.abs() / length } else { 0.0 }
+        };
+        let candidates = (0..self.size).filter(|&j| settled[j] && !bounds.holds(j)).map(|j| (j, pull(j)));
+        candidates.filter(|candidate| candidate.1 > 0.0).max_by(|a, b| a.1.total_cmp(&b.1)).map(|candidate| candidate.0)
+    }
+
     /// Curves a step towards where the rows bend (geodesic acceleration; Transtrum & Sethna 2012): `there` are the rows
     /// at share `share` of the step, `here` those at its foot, `factor` the factorised Jacobian. Returns the length of
-    /// the bend relative to that of the step, in `scale`; the step is only bent where that is small.
+    /// the bend relative to that of the step, in the damping's scale; the step is only bent where that is small.
     pub(super) fn bend(
         &self,
         step: &mut Step,
@@ -119,8 +150,7 @@ impl LinearModel {
         here: &[f64],
         there: &mut [f64],
         share: f64,
-        scale: &[f64],
-        damping: f64,
+        damping: Damping<'_>,
     ) -> f64 {
         for (there, here) in there.iter_mut().zip(here) {
             *there = (*there - here) / share;
@@ -129,8 +159,8 @@ impl LinearModel {
         // Second derivative along the step, halved: (Δr/share − J·δ)/share.
         let linear = self.image(&step.change);
         let curve: Vec<f64> = there.iter().zip(&linear).map(|(a, b)| (a - b) / share).collect();
-        let bend = self.solve(&step.open, &curve, scale, damping);
-        let length = |value: f64, j: usize| (value * scale[j]) * (value * scale[j]);
+        let bend = self.solve(&step.open, &curve, damping);
+        let length = |value: f64, j: usize| (value * damping.scale[j]).powi(2);
         let bent: f64 = step.open.iter().zip(&bend).map(|(&j, &value)| length(value, j)).sum();
         let straight: f64 = step.change.iter().enumerate().map(|(j, &value)| length(value, j)).sum();
         for (&j, value) in step.open.iter().zip(&bend) {
@@ -173,8 +203,8 @@ impl LinearModel {
         -dot(&moved, &moved) - 2.0 * dot(&moved, &self.right)
     }
 
-    /// The open parameters that minimise ‖R·x + pull‖² + damping·‖scale·x‖².
-    fn solve(&self, open: &[usize], pull: &[f64], scale: &[f64], damping: f64) -> Vec<f64> {
+    /// The open parameters that minimise ‖R·x + pull‖² + λ·‖scale·x‖².
+    fn solve(&self, open: &[usize], pull: &[f64], damping: Damping<'_>) -> Vec<f64> {
         if open.is_empty() {
             return Vec::new();
         }
@@ -184,7 +214,7 @@ impl LinearModel {
         right[..size].copy_from_slice(pull);
         for (k, &j) in open.iter().enumerate() {
             matrix[k * rows..k * rows + size].copy_from_slice(&self.triangle[j * size..(j + 1) * size]);
-            matrix[k * rows + size + k] = damping.sqrt() * scale[j];
+            matrix[k * rows + size + k] = damping.factor.sqrt() * damping.scale[j];
         }
         triangularise(&mut matrix, rows, &mut right);
         let mut solution = vec![0.0; open.len()];

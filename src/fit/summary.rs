@@ -10,6 +10,10 @@ use super::outcome::{
 use super::search::Survey;
 use super::statistics::{central_95, lag_one, one_sided_95};
 use super::warnings::warnings;
+use crate::parameter::Spread;
+
+/// A square matrix over the free parameters, with holes where there is no number.
+type Matrix = Vec<Vec<Option<f64>>>;
 
 /// Turns a finished survey into the result.
 pub(super) fn summarise(
@@ -99,7 +103,7 @@ fn rows(objective: &Objective<'_>, free: &[f64]) -> Vec<f64> {
 /// Covariance of the free parameters at one minimum.
 struct Errors {
     /// Over all free parameters; None where one is on a bound or has no rank.
-    covariance: Vec<Vec<Option<f64>>>,
+    covariance: Matrix,
 }
 
 impl Errors {
@@ -126,7 +130,7 @@ impl Errors {
     }
 
     /// Covariance and correlations.
-    fn matrices(&self) -> (Vec<Vec<Option<f64>>>, Vec<Vec<Option<f64>>>) {
+    fn matrices(&self) -> (Matrix, Matrix) {
         let size = self.covariance.len();
         let mut correlations = vec![vec![None; size]; size];
         for (i, row) in correlations.iter_mut().enumerate() {
@@ -156,7 +160,7 @@ impl Errors {
     }
 }
 
-fn no_covariance(size: usize) -> (Vec<Vec<Option<f64>>>, Vec<Vec<Option<f64>>>) {
+fn no_covariance(size: usize) -> (Matrix, Matrix) {
     (vec![vec![None; size]; size], vec![vec![None; size]; size])
 }
 
@@ -194,7 +198,9 @@ fn minima(objective: &Objective<'_>, found: &[Found], errors: &[Option<Errors>],
         Likelihood::Unknown { readings: goodness.effective_readings, floor: f64::MIN_POSITIVE }
     };
     let ln_weight = |found: &Found| {
-        found.curvature.as_ref().map_or(f64::NEG_INFINITY, |c| ln_weight(found.cost, c, &ranges, likelihood))
+        found.curvature.as_ref().map_or(f64::NEG_INFINITY, |curvature| {
+            ln_flat_prior(objective, &found.free) + ln_weight(found.cost, curvature, &ranges, likelihood)
+        })
     };
     let weights = normalised(&found.iter().map(ln_weight).collect::<Vec<_>>());
     let count = objective.residuals.parameters().len();
@@ -219,6 +225,18 @@ fn minima(objective: &Objective<'_>, found: &[Found], errors: &[Option<Errors>],
         }
     };
     found.iter().zip(errors).zip(weights).map(minimum).collect()
+}
+
+/// ln of the density that stands for knowing nothing beforehand: even in a parameter that is spread evenly, and even in
+/// the logarithm, 1/x, of one that is spread so (a thickness, a gain), whose scale is not known. A parameter with a prior
+/// of its own has that in the cost.
+fn ln_flat_prior(objective: &Objective<'_>, free: &[f64]) -> f64 {
+    let has_prior = |j: usize| objective.priors.iter().any(|prior| matches!(prior.terms[..], [(k, _)] if k == j));
+    let declared = objective.mapping.free.iter().zip(free).enumerate();
+    declared
+        .filter(|(j, (parameter, _))| parameter.spread == Spread::Logarithmic && !has_prior(*j))
+        .map(|(_, (_, value))| -value.ln())
+        .sum()
 }
 
 fn estimates(
@@ -338,7 +356,8 @@ fn describe(inner: &[usize], direction: &[f64], names: &[String], relative: f64)
         .filter(|(_, share)| share.abs() > 0.1)
         .map(|(&j, &share)| (names[j].clone(), share))
         .collect();
-    shares.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    // Shares that are equal but for rounding keep the order of the parameters.
+    shares.sort_by(|a, b| (1e6 * b.1.abs()).round().total_cmp(&(1e6 * a.1.abs()).round()));
     if shares.first().is_some_and(|first| first.1 < 0.0) {
         shares.iter_mut().for_each(|share| share.1 = -share.1);
     }

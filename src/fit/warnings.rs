@@ -1,6 +1,6 @@
 //! What a reader must know before using the numbers, each a sentence: what was seen, and what to do.
 
-use super::outcome::{Bound, Fit, Loss, SigmaSource, StopReason};
+use super::outcome::{Bound, Fit, Goodness, Loss, SigmaSource, StopReason};
 
 /// A rival with more than this share of the best one's weight is spoken of.
 const RIVAL: f64 = 0.05;
@@ -9,6 +9,7 @@ const RIVAL: f64 = 0.05;
 pub(super) fn warnings(fit: &Fit) -> Vec<String> {
     let mut sentences = Vec::new();
     sentences.extend(stop(fit));
+    sentences.extend(misfit(&fit.goodness));
     sentences.extend(rivals(fit));
     sentences.extend(fit.open_directions.iter().map(|direction| direction.text.clone()));
     sentences.extend(bounds(fit));
@@ -34,16 +35,47 @@ fn stop(fit: &Fit) -> Option<String> {
 
 fn rivals(fit: &Fit) -> Option<String> {
     let best = fit.minima.first()?.weight;
-    let rivals = fit.minima.iter().skip(1).filter(|minimum| minimum.weight > RIVAL * best).count();
-    let share =
-        fit.minima.iter().skip(1).map(|minimum| minimum.weight).fold(0.0, f64::max) / best.max(f64::MIN_POSITIVE);
-    (rivals > 0).then(|| {
-        let (noun, verb) = if rivals == 1 { ("minimum", "has") } else { ("minima", "have") };
+    let rivals: Vec<f64> = fit.minima.iter().skip(1).map(|minimum| minimum.weight).collect();
+    let heavy = rivals.iter().filter(|weight| **weight > RIVAL * best).count();
+    let largest = rivals.into_iter().fold(0.0, f64::max);
+    (heavy > 0).then(|| {
+        let (noun, verb) = if heavy == 1 { ("minimum", "has") } else { ("minima", "have") };
         format!(
-            "{rivals} other {noun} {verb} more than 5 % of the weight of the best one, up to {:.0} %: the readings do not decide between them.",
-            100.0 * share
+            "{heavy} other {noun} {verb} more than 5 % of the weight of the best fit: the readings do not decide between \
+             them. The best fit carries {:.1} % of all weight, the heaviest of the others {:.1} %.",
+            100.0 * best,
+            100.0 * largest
         )
     })
+}
+
+/// What keeps the standard errors from being the whole truth: a model that misses the readings, or readings that err
+/// together.
+pub fn misfit(goodness: &Goodness) -> Vec<String> {
+    #[expect(clippy::cast_precision_loss, reason = "numbers of readings are far below 2^53")]
+    let (readings, freedom) = (goodness.readings as f64, goodness.degrees_of_freedom as f64);
+    let mut sentences = Vec::new();
+    if let Some(reduced) = goodness.reduced_chi_squared {
+        // χ²/ν has the standard deviation √(2/ν); three of them, and a fifth of σ, are too much for chance.
+        if reduced > (1.0 + 3.0 * (2.0 / freedom).sqrt()).max(1.44) {
+            sentences.push(format!(
+                "The model misses the readings by {:.1} times their σ on the whole (reduced χ² {reduced:.1}): standard \
+                 errors are too small, and weights too sure.",
+                reduced.sqrt()
+            ));
+        }
+    }
+    let share = readings / goodness.effective_readings;
+    if share > 2.0 {
+        sentences.push(format!(
+            "Neighbouring residuals err together: {} readings tell about as much as {:.0} independent ones would, so that \
+             true errors are nearer to {:.1} times the standard errors given.",
+            goodness.readings,
+            goodness.effective_readings,
+            share.sqrt()
+        ));
+    }
+    sentences
 }
 
 fn bounds(fit: &Fit) -> Vec<String> {

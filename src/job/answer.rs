@@ -1,8 +1,8 @@
 //! The answer in a sentence or two: value ± error, its rivals, what stays open.
 
-use super::outcome::{Case, Outcome};
-use crate::fit::{Bound, Estimate, Fit, StopReason};
-use crate::number::with_error;
+use super::outcome::{Case, CaseData, Outcome, ThicknessOrder};
+use crate::fit::{Bound, Estimate, Fit, Minimum, StopReason, misfit};
+use crate::number::{minus, with_error};
 
 /// A rival minimum with more than this share of the best one's weight is named.
 const RIVAL_SHARE: f64 = 0.05;
@@ -16,15 +16,13 @@ pub(super) fn job_answer(outcome: &Outcome) -> String {
     if outcome.synthetic.is_some() {
         sentences.push("Synthetic readings, made from known values.".to_owned());
     }
-    for (index, case) in outcome.cases.iter().enumerate() {
-        if outcome.cases.len() == 1 {
-            sentences.push(case.answer.clone());
-        } else if index == 0 {
-            sentences.push(format!("{}: {}", case.name, case.answer));
-        } else {
-            sentences.push(format!("{}: {}", case.name, main_values(&case.fit)));
-        }
-    }
+    let (main, others) = match outcome.cases.as_slice() {
+        [] => return String::new(),
+        [main, others @ ..] => (main, others),
+    };
+    let assumed = if others.is_empty() { String::new() } else { format!("Assuming {}: ", main.name) };
+    sentences.push(format!("{assumed}{}", main.answer));
+    sentences.extend(others.iter().map(|case| format!("Assuming {}: {}", case.name, values_sentence(case))));
     sentences.join(" ")
 }
 
@@ -40,14 +38,12 @@ pub(super) fn case_answer(case: &Case) -> String {
         };
         sentences.push(verdict.to_owned());
     }
-    sentences.push(main_values(fit));
-    if case.orders.len() > 1 {
-        let orders: Vec<String> = case.orders.iter().map(|order| format!("{:.0}", order.thickness_nm)).collect();
-        sentences
-            .push(format!("Peaks alone do not give the order of interference: d may be any of {} nm.", list(&orders)));
-    } else {
+    sentences.push(values_sentence(case));
+    if case.orders.len() < 2 {
         sentences.extend(rivals(fit));
     }
+    sentences.extend(held_out(case));
+    sentences.extend(misfit(&fit.goodness));
     if !fit.open_directions.is_empty() {
         let open: Vec<&str> = fit.open_directions.iter().map(|direction| direction.text.as_str()).collect();
         sentences.push(format!("The data leave open: {}.", open.join("; ")));
@@ -60,6 +56,39 @@ pub(super) fn case_answer(case: &Case) -> String {
         StopReason::Cancelled => sentences.push("The fit was stopped early; this is the best so far.".into()),
     }
     sentences.join(" ")
+}
+
+/// The fitted values, or every order's where the readings do not tell them apart.
+fn values_sentence(case: &Case) -> String {
+    let [first, .., last] = case.orders.as_slice() else { return main_values(&case.fit) };
+    let text = |order: &ThicknessOrder| with_error(order.thickness_nm, order.standard_error_nm);
+    // The law gives all orders one index; where a full model does not, the range says so.
+    let index = if (first.index - last.index).abs() < first.index_standard_error.unwrap_or(0.0) {
+        with_error(first.index, first.index_standard_error)
+    } else {
+        format!("{:.3} to {:.3}", first.index.min(last.index), first.index.max(last.index))
+    };
+    let thicknesses: Vec<String> = case.orders.iter().map(text).collect();
+    format!(
+        "n = {index}; peaks alone do not give the order of interference, so that the thickness is one of {} nm (orders {} to {}).",
+        thicknesses.join(", "),
+        first.order,
+        last.order
+    )
+}
+
+/// How well peaks that the fit did not see are predicted.
+fn held_out(case: &Case) -> Option<String> {
+    let CaseData::Peaks { peaks, .. } = &case.data else { return None };
+    let errors: Vec<String> = peaks
+        .iter()
+        .filter(|peak| !peak.fitted)
+        .map(|peak| {
+            peak.model_nm.map_or_else(|| "no peak".into(), |nm| minus(&format!("{:+.1}", peak.measured_nm - nm)))
+        })
+        .collect();
+    let what = if errors.len() == 1 { "peak that was held out lies" } else { "peaks that were held out lie" };
+    (!errors.is_empty()).then(|| format!("The {what} {} nm from the prediction.", list(&errors)))
 }
 
 /// The physical parameters first, the instrument's last; a few of them.
@@ -97,37 +126,33 @@ fn value_text(estimate: &Estimate) -> String {
     }
 }
 
-/// A sentence on minima that the data cannot rule out.
+/// Most rivals that a sentence can carry.
+const MOST_RIVALS: usize = 4;
+
+/// A sentence on minima that the data cannot rule out, the heaviest first.
 fn rivals(fit: &Fit) -> Option<String> {
-    let best = fit.minima.first()?;
-    let others: Vec<_> = fit.minima[1..].iter().filter(|minimum| minimum.weight > RIVAL_SHARE * best.weight).collect();
-    if others.is_empty() {
-        let count = fit.minima.len() - 1;
-        return (count > 0).then(|| {
-            format!(
-                "{count} other minima were found, none with more than {} of the best one's weight.",
-                percent(RIVAL_SHARE)
-            )
-        });
+    let (best, others) = fit.minima.split_first()?;
+    let mut heavy: Vec<&Minimum> = others.iter().filter(|minimum| minimum.weight > RIVAL_SHARE * best.weight).collect();
+    if heavy.is_empty() {
+        let count = others.len();
+        let noun = if count == 1 { "other minimum was" } else { "other minima were" };
+        return (count > 0)
+            .then(|| format!("{count} {noun} found, none with more than {} of its weight.", percent(RIVAL_SHARE)));
     }
+    heavy.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let scanned = fit.profiles.first().and_then(|(name, _)| fit.estimates.iter().position(|e| e.name == *name));
-    let texts: Vec<String> = others
-        .iter()
-        .map(|minimum| {
-            let share = percent(minimum.weight / best.weight);
-            match scanned {
-                Some(index) => {
-                    let estimate = &fit.estimates[index];
-                    format!("{} = {:.1} {} ({share})", estimate.symbol, minimum.values[index], estimate.unit)
-                }
-                None => format!("one with {share}"),
-            }
-        })
-        .collect();
-    Some(format!(
-        "Rivals that the data do not rule out, with their share of the best one's weight: {}.",
-        texts.join(", ")
-    ))
+    let text = |minimum: &&Minimum| match scanned {
+        Some(index) => {
+            let Estimate { symbol, unit, .. } = &fit.estimates[index];
+            format!("{symbol} = {:.1} {unit} ({})", minimum.values[index], percent(minimum.weight))
+        }
+        None => percent(minimum.weight),
+    };
+    let mut texts: Vec<String> = heavy.iter().take(MOST_RIVALS).map(text).collect();
+    if heavy.len() > MOST_RIVALS {
+        texts.push(format!("{} more", heavy.len() - MOST_RIVALS));
+    }
+    Some(format!("The data do not rule out {} by weight; the best fit has {}.", list(&texts), percent(best.weight)))
 }
 
 fn percent(share: f64) -> String {

@@ -149,7 +149,11 @@ fn thickness_orders(problem: &PeaksProblem, fit: &Fit) -> Vec<ThicknessOrder> {
         found.next().map(|(index, _)| index).filter(|_| found.next().is_none())
     };
     let (Some(thickness), Some(index)) = (find(".thickness_nm"), find(".index")) else { return Vec::new() };
+    let bounds = fit.estimates[thickness].bounds;
     let orders = fit.minima.iter().filter_map(|minimum| {
+        // A thickness that leans on its bound fits no order.
+        let inside = |[lower, upper]: [f64; 2]| lower < minimum.values[thickness] && minimum.values[thickness] < upper;
+        bounds.filter(|bounds| inside(*bounds))?;
         let order = problem.implied_order(&minimum.values)?;
         Some(ThicknessOrder {
             order: problem.interference_order(order),

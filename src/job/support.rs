@@ -8,6 +8,7 @@ use crate::bsdf::Model;
 use crate::bsdf::{CoatedBase, Design};
 use crate::fit::{Control, Fit};
 use crate::measure::{GonioTable, Spectrum};
+use crate::number::{minus, with_error};
 
 /// Fewest incidences that a standard error over them means something for.
 const FEWEST_INCIDENCES: usize = 3;
@@ -60,9 +61,10 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
     let verdict = if supported { "A film is supported" } else { "No film is supported" };
     let orders = if same_order { "the same order" } else { "different orders" };
     let text = format!(
-        "{verdict}: leaving out one incidence at a time, the film lowers the mean squared prediction error by {gain:.3} \
-         ± {gain_standard_error:.3} ({}; more than two standard errors would be needed), and its thickness is of \
+        "{verdict}: leaving out one incidence at a time, the film changes the mean squared prediction error by {} \
+         ({}; a fall of more than two standard errors would be needed), and its thickness is of \
          {orders} of interference in every fold.",
+        minus(&with_error(-gain, Some(gain_standard_error))),
         if seen.spectra.iter().all(|spectrum| spectrum.sigmas.is_some()) {
             "in units of σ²"
         } else {

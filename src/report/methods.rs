@@ -255,6 +255,8 @@ fn uncertainty_text(fit: &Fit, bibliography: &mut Bibliography) -> String {
         "Standard errors come from the inverse of JᵀJ at the best minimum{scaled}; they hold where the model is right and \
          nearly linear within them. Every distinct minimum is listed, minima closer than one standard error being counted \
          as one, with a weight by Laplace's approximation to its share of the posterior {tierney}: prior × exp(−χ²/2) × \
-         √det C, or from N ln RSS where σ is unknown.{priors}"
+         √det C, or from N ln RSS where σ is unknown, N being the effective number of readings. Where nothing was known \
+         beforehand, a thickness, a gain or a roughness was taken as equally likely per decade, and any other parameter per \
+         unit.{priors}"
     )
 }

@@ -3,6 +3,8 @@
 //!
 //! LRE = −log₁₀ of the relative error, at most 11 (the certified values have 11 digits); a run scores its worst parameter.
 
+#![expect(clippy::unwrap_used, reason = "a helper of a test fails by panicking")]
+
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::sync::atomic::AtomicBool;
@@ -11,12 +13,14 @@ use barbule::fit::{Assignment, Control, Fit, Residuals, Role, Settings, fit};
 use barbule::parameter::{Parameter, Spread};
 
 type Model = fn(&[f64], &[f64]) -> f64;
+/// Model minus reading, of parameters, x and y.
+type Residual = Box<dyn Fn(&[f64], &[f64], f64) -> f64 + Sync>;
 
 /// One problem: its model, and its readings.
 struct Problem {
     parameters: Vec<Parameter>,
     readings: Vec<(Vec<f64>, f64)>,
-    residual: Box<dyn Fn(&[f64], &[f64], f64) -> f64 + Sync>,
+    residual: Residual,
 }
 
 impl Residuals for Problem {
@@ -148,7 +152,7 @@ fn problem(name: &str, parameters: usize) -> Problem {
         let y = number(&row[0]);
         (row[1..].iter().map(|x| number(x)).collect(), if logarithmic { y.ln() } else { y })
     });
-    let residual: Box<dyn Fn(&[f64], &[f64], f64) -> f64 + Sync> = if name == "Lanczos1" {
+    let residual: Residual = if name == "Lanczos1" {
         Box::new(lanczos1)
     } else {
         let model = model(name);
