@@ -16,7 +16,7 @@ pub(super) fn values(model: &dyn Model, changes: &[(&str, f64)]) -> Vec<f64> {
         let position = model.parameters().iter().position(|parameter| parameter.name == *name);
         values[position.unwrap_or_else(|| panic!("no parameter {name}"))] = *value;
     }
-    model.check(&values).unwrap();
+    model.check(&values).expect("the values are inside their bounds");
     values
 }
 

@@ -92,7 +92,7 @@ fn worst_table_error(count: u64) -> f64 {
         ((found - expected).abs(), format!("η {eta}, α {alpha}, μ {cosine}: {found} instead of {expected}"))
     };
     let errors: Vec<_> = (0..count).into_par_iter().map(error_at).collect();
-    let (worst, place) = errors.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+    let (worst, place) = errors.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).expect("there are points");
     println!("worst of {count}: {worst:.2e} at {place}");
     worst
 }
@@ -247,7 +247,7 @@ fn rough_plastic_never_creates_light() {
 
 fn iridescent(interference: Interference, wavelengths_nm: &[f64]) -> IridescentPlastic {
     let design = IridescentPlasticDesign { interference, ..Default::default() };
-    IridescentPlastic::new(&design, wavelengths_nm).unwrap()
+    IridescentPlastic::new(&design, wavelengths_nm).expect("the design is valid")
 }
 
 /// Energy is not conserved, and the docs say by how much.
