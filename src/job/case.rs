@@ -10,8 +10,6 @@ use super::peaks::PeaksProblem;
 use super::predict::Values;
 use super::spectra::{SpectraProblem, SpectraSetup};
 use super::{InputFile, JobError, JobFile, synthetic};
-use crate::bsdf::Model;
-use crate::bsdf::{CoatedBase, Design};
 use crate::fit::{Assignment, Control, Fit, Loss, Prior, Residuals, Role, fit, parse_tie};
 use crate::measure::{
     Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, TableText,
@@ -190,13 +188,9 @@ impl CheckedCase {
 
 /// The problem of the fitted spectra.
 pub(super) fn spectra_problem(file: &JobFile, table: &GonioTable, fitted: &[bool]) -> Result<SpectraProblem, JobError> {
-    let ModelFile::CoatedBase(design) = &file.model else {
-        let problem = "`thin-film-law` predicts peak wavelengths, and the table holds spectra; use `coated-base`";
-        return Err(JobError::key("model.kind", problem));
-    };
     let spectra = seen_spectra(table, fitted);
     SpectraProblem::new(&SpectraSetup {
-        make_model: &|wavelengths_nm| coated_base(design, wavelengths_nm),
+        make_model: &|wavelengths_nm| file.model.scattering(wavelengths_nm),
         quantity: table.quantity,
         spectra: &spectra,
         instrument: &file.instrument,
@@ -207,11 +201,6 @@ pub(super) fn spectra_problem(file: &JobFile, table: &GonioTable, fitted: &[bool
 fn seen_spectra(table: &GonioTable, fitted: &[bool]) -> Vec<Spectrum> {
     let seen = table.spectra.iter().zip(fitted).filter(|(_, fitted)| **fitted);
     seen.map(|(spectrum, _)| spectrum.clone()).collect()
-}
-
-/// Makes the model of a design.
-pub(super) fn coated_base(design: &Design, wavelengths_nm: &[f64]) -> Result<Box<dyn Model>, JobError> {
-    Ok(Box::new(CoatedBase::new(design, wavelengths_nm)?))
 }
 
 /// Most rings of directions in a cone; a reading then costs up to (4 · 12²)² evaluations.
@@ -272,6 +261,14 @@ fn peak_model(model: &ModelFile, table: &PeakTable) -> Result<Box<dyn PeakModel>
     Ok(match model {
         ModelFile::ThinFilmLaw(design) => Box::new(ThinFilmLaw::new(design.clone(), shortest_nm)),
         ModelFile::CoatedBase(design) => Box::new(FilmPeaks::new(design, shortest_nm)?),
+        other => {
+            let problem = format!(
+                "`{}` has no peaks of interference, and the table holds peak wavelengths; use `thin-film-law` or \
+                 `coated-base`",
+                other.card().kind
+            );
+            return Err(JobError::key("model.kind", problem));
+        }
     })
 }
 
@@ -384,6 +381,7 @@ fn inside(parameter: &Parameter, value: f64) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bsdf::{CoatedBase, Model};
     use crate::measure::{Aperture, Quantity};
 
     /// The bar is 1e-3 of the reading in mirror position, where a lobe is narrowest against its cones.
