@@ -3,6 +3,7 @@
 mod outcome;
 
 pub use outcome::{
-    Case, CaseData, InputFile, MaterialNote, ModelNote, Outcome, PeakFit, Prediction, Reference, SpectrumFit, Support,
-    ThicknessOrder, Truth,
+    Case, CaseData, InputFile, ModelNote, Outcome, PeakFit, Prediction, SpectrumFit, Support, ThicknessOrder, Truth,
 };
+
+pub use crate::optics::{MaterialNote, Reference};

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::fit::Fit;
 use crate::measure::{Geometry, Quantity};
+use crate::optics::{MaterialNote, Reference};
 
 /// The result of a job. Same inputs, same seed, same bytes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -85,24 +86,6 @@ pub struct ModelNote {
     pub materials: Vec<MaterialNote>,
     /// Works to cite.
     pub references: Vec<Reference>,
-}
-
-/// A material used, with how well it is known.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-pub struct MaterialNote {
-    /// Name in the job.
-    pub name: String,
-    /// Formula or table, range, source, and how well known, a sentence.
-    pub text: String,
-}
-
-/// A work to cite.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-pub struct Reference {
-    /// Key in the text: `Yeh 1988`.
-    pub key: String,
-    /// Full citation.
-    pub citation: String,
 }
 
 /// Measured and fitted values.

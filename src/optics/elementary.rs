@@ -1,0 +1,113 @@
+//! Sine, cosine and exponential without branches and without calls, so that a loop over channels becomes vector
+//! instructions.
+//!
+//! The standard library's functions are calls into libm, and one call ends the vectorisation of the loop that holds
+//! it. The functions here are plain arithmetic on one number; the compiler turns a loop over them into as many lanes
+//! as the processor has. No fused multiply-add is used: without it the hardware instruction is missing on old
+//! processors and its emulation is slow, and with one rounding an operation all processors give the same bits.
+
+/// Adding and subtracting 1.5 · 2⁵² rounds to the nearest integer, which is then in the low bits of the sum.
+const ROUND: f64 = 6_755_399_441_055_744.0;
+
+/// π/2 in two parts (Cody and Waite 1980). The first has 33 bits, so that its product with a whole number up to 2²⁰ is
+/// exact; the second continues it with 53 more.
+const HALF_PI_HIGH: f64 = 1.570_796_326_734_125_6;
+const HALF_PI_LOW: f64 = 6.077_100_506_506_192e-11;
+
+/// Sine and cosine of `x`, absolute error below 4e-16 for |x| ≤ 1.6e6 (10⁶ quarter turns); useless far beyond.
+///
+/// Reduction to |r| ≤ π/4 by whole quarter turns, then the minimax polynomials of fdlibm (Sun Microsystems 1993,
+/// `k_sin.c` and `k_cos.c`).
+#[inline(always)]
+pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
+    let shifted = x * std::f64::consts::FRAC_2_PI + ROUND;
+    let quarter_turns = shifted - ROUND;
+    let r = (x - quarter_turns * HALF_PI_HIGH) - quarter_turns * HALF_PI_LOW;
+
+    let z = r * r;
+    let w = z * z;
+    let sine_tail = (8.333_333_333_322_49e-3 + z * -1.984_126_982_985_795e-4)
+        + w * ((2.755_731_370_707_006_8e-6 + z * -2.505_076_025_340_686_3e-8) + w * 1.589_690_995_211_55e-10);
+    let sine = r + r * z * (-1.666_666_666_666_663_2e-1 + z * sine_tail);
+    let cosine_tail = (4.166_666_666_666_66e-2 + z * -1.388_888_888_887_411e-3)
+        + w * ((2.480_158_728_947_673e-5 + z * -2.755_731_435_139_066_3e-7)
+            + w * (2.087_572_321_298_175e-9 + z * -1.135_964_755_778_819_5e-11));
+    let cosine = 1.0 - z * 0.5 + w * cosine_tail;
+
+    // An odd number of quarter turns swaps sine and cosine; the signs go +, +, −, − and +, −, −, +.
+    let quadrant = shifted.to_bits();
+    let swap = quadrant & 1 == 1;
+    let (sine, cosine) = if swap { (cosine, sine) } else { (sine, cosine) };
+    let sine_sign = (quadrant & 2) << 62;
+    let cosine_sign = ((quadrant.wrapping_add(1)) & 2) << 62;
+    (f64::from_bits(sine.to_bits() ^ sine_sign), f64::from_bits(cosine.to_bits() ^ cosine_sign))
+}
+
+/// ln 2 in two parts, the first with 33 bits.
+const LN_2_HIGH: f64 = 6.931_471_803_691_238e-1;
+const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
+
+/// exp(x) for x ≤ 0, relative error below 4e-16; 0 stands for everything below e^−708.
+///
+/// Reduction by whole powers of two, then the Taylor series to the 13th power (remainder 4e-18 at |r| = ln 2/2).
+#[inline(always)]
+pub(crate) fn exp_of_negative(x: f64) -> f64 {
+    let inside = x.max(-708.0);
+    let shifted = inside * std::f64::consts::LOG2_E + ROUND;
+    let power = shifted - ROUND;
+    let r = (inside - power * LN_2_HIGH) - power * LN_2_LOW;
+    let mut series = 1.0 / 6_227_020_800.0;
+    for reciprocal_factorial in [
+        1.0 / 479_001_600.0,
+        1.0 / 39_916_800.0,
+        1.0 / 3_628_800.0,
+        1.0 / 362_880.0,
+        1.0 / 40_320.0,
+        1.0 / 5_040.0,
+        1.0 / 720.0,
+        1.0 / 120.0,
+        1.0 / 24.0,
+        1.0 / 6.0,
+        0.5,
+        1.0,
+        1.0,
+    ] {
+        series = series * r + reciprocal_factorial;
+    }
+    let two_to_power = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
+    if x < -708.0 { 0.0 } else { series * two_to_power }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Largest difference from the standard library over a dense list of phases that no grid of quarter turns shares.
+    #[test]
+    fn sine_and_cosine_agree_with_libm() {
+        let mut worst: f64 = 0.0;
+        for i in -400_000..400_000 {
+            let x = f64::from(i) * 0.025_312_7;
+            let (sine, cosine) = sin_cos(x);
+            worst = worst.max((sine - x.sin()).abs()).max((cosine - x.cos()).abs());
+        }
+        for x in [0.0, -0.0, 1e-300, std::f64::consts::FRAC_PI_4, 1.0e6, 1.5e6, -1.6e6] {
+            let (sine, cosine) = sin_cos(x);
+            worst = worst.max((sine - x.sin()).abs()).max((cosine - x.cos()).abs());
+        }
+        assert!(worst <= 4e-16, "worst absolute error {worst:e}");
+    }
+
+    #[test]
+    fn exponential_agrees_with_libm() {
+        let mut worst: f64 = 0.0;
+        for i in 0..700_000 {
+            let x = -f64::from(i) * 1.011e-3;
+            worst = worst.max((exp_of_negative(x) / x.exp() - 1.0).abs());
+        }
+        assert!(worst <= 4e-16, "worst relative error {worst:e}");
+        assert_eq!(exp_of_negative(0.0).to_bits(), 1.0_f64.to_bits());
+        assert_eq!(exp_of_negative(-709.0).to_bits(), 0.0_f64.to_bits());
+        assert_eq!(exp_of_negative(f64::NEG_INFINITY).to_bits(), 0.0_f64.to_bits());
+    }
+}

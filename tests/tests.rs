@@ -1,0 +1,3 @@
+//! All integration tests in one binary; the module list is the table of contents.
+
+mod suite;
