@@ -5,6 +5,8 @@
 //! wavelengths alone is done when the model is made, work that depends on the parameters when it is bound, and only
 //! the rest for each pair of directions. The loop over channels is the innermost one and runs over contiguous memory.
 
+pub mod cylinder;
+
 use nalgebra::Vector3;
 
 use crate::parameter::Parameter;

@@ -1,4 +1,4 @@
-//! Sine, cosine and exponential without branches and without calls, so that a loop over channels becomes vector
+//! Sine, cosine, arc sine and exponential without branches and without calls, so that a loop over channels becomes vector
 //! instructions.
 //!
 //! The standard library's functions are calls into libm, and one call ends the vectorisation of the loop that holds
@@ -78,9 +78,48 @@ pub(crate) fn exp_of_negative(x: f64) -> f64 {
     if x < -708.0 { 0.0 } else { series * two_to_power }
 }
 
+/// asin(x) for 0 ≤ x ≤ 1, absolute error below 5e-15.
+///
+/// asin x = x P(x²) up to 1/2, with P the Chebyshev series of degree 10 (first omitted term 4e-15, computed for this file
+/// in 60 digits); beyond, asin x = π/2 − 2 asin √((1 − x)/2).
+#[inline(always)]
+pub(crate) fn arc_sine_of_positive(x: f64) -> f64 {
+    let large = x > 0.5;
+    let half_complement = 0.5 * (1.0 - x);
+    let square = if large { half_complement } else { x * x };
+    let root = if large { half_complement.sqrt() } else { x };
+    let mut series = 3.162_602_288_099_282e-2;
+    for coefficient in [
+        -7.464_967_474_804e-3,
+        1.800_678_340_489_532_7e-2,
+        1.252_622_520_983_196_8e-2,
+        1.755_432_126_616_409_2e-2,
+        2.235_425_010_169_769_8e-2,
+        3.038_292_856_590_311_3e-2,
+        4.464_282_576_596_411e-2,
+        7.500_000_051_106_93e-2,
+        1.666_666_666_634_292_7e-1,
+        1.000_000_000_000_003_3,
+    ] {
+        series = series * square + coefficient;
+    }
+    let angle = root * series;
+    if large { std::f64::consts::FRAC_PI_2 - 2.0 * angle } else { angle }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn arc_sine_agrees_with_libm() {
+        let mut worst: f64 = 0.0;
+        for i in 0..=1_000_000 {
+            let x = f64::from(i) * 1e-6;
+            worst = worst.max((arc_sine_of_positive(x) - x.asin()).abs());
+        }
+        assert!(worst <= 5e-15, "worst absolute error {worst:e}");
+    }
 
     /// Largest difference from the standard library over a dense list of phases that no grid of quarter turns shares.
     #[test]

@@ -130,7 +130,9 @@ impl IndexTable {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MaterialError {
     /// No material of this name is known.
-    #[error("there is no material {found:?}; known are {known}{suggestion}, or describe your own with `name` and `index`, `cauchy_a` and `cauchy_b_nm2`, or `table`")]
+    #[error(
+        "there is no material {found:?}; known are {known}{suggestion}, or describe your own with `name` and `index`, `cauchy_a` and `cauchy_b_nm2`, or `table`"
+    )]
     Unknown {
         /// Name as it was given.
         found: String,
@@ -146,7 +148,9 @@ pub enum MaterialError {
         rows: usize,
     },
     /// A row with senseless numbers.
-    #[error("row {row} of the table of indices is [{wavelength_nm}, {n}, {k}]; expected a positive wavelength in nm, n from 0.001 to 100 and k from 0 to 100")]
+    #[error(
+        "row {row} of the table of indices is [{wavelength_nm}, {n}, {k}]; expected a positive wavelength in nm, n from 0.001 to 100 and k from 0 to 100"
+    )]
     BadRow {
         /// Row, counted from 1.
         row: usize,
@@ -158,7 +162,9 @@ pub enum MaterialError {
         k: f64,
     },
     /// Wavelengths that do not rise.
-    #[error("row {row} of the table of indices has wavelength {wavelength_nm} nm after {before_nm} nm; sort the rows by rising wavelength, each once")]
+    #[error(
+        "row {row} of the table of indices has wavelength {wavelength_nm} nm after {before_nm} nm; sort the rows by rising wavelength, each once"
+    )]
     Unsorted {
         /// Row, counted from 1.
         row: usize,
@@ -168,7 +174,9 @@ pub enum MaterialError {
         before_nm: f64,
     },
     /// A wavelength that the table does not reach.
-    #[error("the table of indices reaches from {from_nm} to {to_nm} nm and says nothing of {wavelength_nm} nm; extend it or leave these wavelengths out")]
+    #[error(
+        "the table of indices reaches from {from_nm} to {to_nm} nm and says nothing of {wavelength_nm} nm; extend it or leave these wavelengths out"
+    )]
     BeyondTable {
         /// Wavelength asked for.
         wavelength_nm: f64,

@@ -9,7 +9,7 @@
 //! the unpolarised reflectance of the same things over many channels at once, which is what a fit evaluates a million
 //! times; it is tested against the reference.
 
-mod elementary;
+pub(crate) mod elementary;
 pub mod film;
 mod film_kernel;
 pub mod fresnel;

@@ -19,13 +19,7 @@ pub struct Layer {
 
 /// Response of layers, listed from the light's side, on a substrate. Light comes from a clear medium of index `front` at
 /// `cos_theta` (0 to 1) to the normal. No layers is a plain interface.
-pub fn transfer(
-    front: f64,
-    layers: &[Layer],
-    substrate: Complex64,
-    cos_theta: f64,
-    wavelength_nm: f64,
-) -> Response {
+pub fn transfer(front: f64, layers: &[Layer], substrate: Complex64, cos_theta: f64, wavelength_nm: f64) -> Response {
     let wave = Wave::new(front, cos_theta, wavelength_nm);
     let mut below = substrate;
     let mut s: Option<Amplitudes> = None;
@@ -114,9 +108,6 @@ pub(super) fn response(wave: &Wave, substrate: Complex64, s: Amplitudes, p: Ampl
         s,
         p,
         reflectance: Polarised { s: s.r.norm_sqr(), p: p.r.norm_sqr() },
-        transmittance: Polarised {
-            s: entering(s.t, q.re),
-            p: entering(p.t, (substrate * (q / substrate).conj()).re),
-        },
+        transmittance: Polarised { s: entering(s.t, q.re), p: entering(p.t, (substrate * (q / substrate).conj()).re) },
     }
 }

@@ -1,1 +1,2 @@
+mod cylinder;
 mod optics;

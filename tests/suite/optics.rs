@@ -46,8 +46,7 @@ fn fast(front: f64, layers: &[Layer], substrate: Complex64, cos_theta: f64, wave
     let count = layers.len();
     let arrangement = Arrangement::new(count + 1, (0..count).collect(), (0..count).collect(), count);
     let channels = double_wavenumbers(&[wavelength_nm]);
-    let permittivities =
-        indices.iter().map(|index| Permittivity::new(std::iter::once((index.re, index.im)))).collect();
+    let permittivities = indices.iter().map(|index| Permittivity::new(std::iter::once((index.re, index.im)))).collect();
     let thicknesses = layers.iter().map(|layer| layer.thickness_nm).collect();
     let mut reflectance = [0.0];
     LayeredMedium::new(&arrangement, &channels, permittivities, thicknesses).reflectance(
@@ -115,7 +114,8 @@ fn films_and_stacks_agree_with_tmm() {
 fn fresnel_agrees_with_its_table() {
     let oracle = Oracle::read("tests/oracles/fresnel.csv");
     for row in 0..oracle.rows.len() {
-        let (eta, cosine, expected) = (oracle.number(row, "eta"), oracle.number(row, "cos_theta_i"), oracle.number(row, "F"));
+        let (eta, cosine, expected) =
+            (oracle.number(row, "eta"), oracle.number(row, "cos_theta_i"), oracle.number(row, "F"));
         let found = fresnel::dielectric(cosine, eta).unpolarised();
         assert!((found - expected).abs() <= 1e-13, "eta {eta}, cos {cosine}: {found} instead of {expected}");
         if cosine > 0.0 {
@@ -146,7 +146,8 @@ fn fresnel_closed_forms() {
 #[test]
 fn quarter_wave_layers_in_closed_form() {
     let wavelength = 520.0;
-    for (front, n1, n2) in [(1.0, 1.38, 1.9044), (1.0, 1.55, 1.75), (1.0, 1.75, 1.55), (1.5, 1.2, 2.0), (1.3, 2.2, 1.0)] {
+    for (front, n1, n2) in [(1.0, 1.38, 1.9044), (1.0, 1.55, 1.75), (1.0, 1.75, 1.55), (1.5, 1.2, 2.0), (1.3, 2.2, 1.0)]
+    {
         let expected = ((front * n2 - n1 * n1) / (front * n2 + n1 * n1) as f64).powi(2);
         for found in [
             transfer(front, &[layer(real(n1), wavelength / (4.0 * n1))], real(n2), 1.0, wavelength)
@@ -175,9 +176,14 @@ fn quarter_wave_layers_in_closed_form() {
 #[test]
 fn maxima_lie_where_the_order_of_indices_puts_them() {
     let d = 300.0;
-    for (front, n1, n2) in
-        [(1.0, 1.55, 1.75), (1.75, 1.55, 1.0), (1.0, 1.55, 1.0), (1.33, 1.75, 1.55), (1.75, 1.4, 1.55), (1.55, 1.3, 1.8)]
-    {
+    for (front, n1, n2) in [
+        (1.0, 1.55, 1.75),
+        (1.75, 1.55, 1.0),
+        (1.0, 1.55, 1.0),
+        (1.33, 1.75, 1.55),
+        (1.75, 1.4, 1.55),
+        (1.55, 1.3, 1.8),
+    ] {
         let jumps = u32::from(n1 > front) + u32::from(n2 > n1);
         let shift = if jumps == 1 { 0.5 } else { 0.0 };
         let expected: Vec<f64> = (1..8)
@@ -230,9 +236,8 @@ fn by_matrices(front: f64, layers: &[Layer], substrate: Complex64, cos_theta: f6
             let y = admittance(layer.index);
             let (sine, cosine) = (delta.sin(), delta.cos());
             let next = [[cosine, -i * sine / y], [-i * y * sine, cosine]];
-            let product = |row: usize, column: usize| {
-                matrix[row][0] * next[0][column] + matrix[row][1] * next[1][column]
-            };
+            let product =
+                |row: usize, column: usize| matrix[row][0] * next[0][column] + matrix[row][1] * next[1][column];
             matrix = [[product(0, 0), product(0, 1)], [product(1, 0), product(1, 1)]];
         }
         let last = admittance(substrate);
@@ -392,7 +397,13 @@ fn beckmann_is_normalised() {
         let width = 7.0 / f64::from(steps);
         let sum: f64 = (0..=steps)
             .map(|i| {
-                let weight = if i == 0 || i == steps { 1.0 } else if i % 2 == 1 { 4.0 } else { 2.0 };
+                let weight = if i == 0 || i == steps {
+                    1.0
+                } else if i % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
                 weight * integrand(f64::from(i) * width)
             })
             .sum();
