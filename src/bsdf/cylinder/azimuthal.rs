@@ -19,6 +19,15 @@ pub(super) trait Density: Copy {
     /// The density at a distance from its peak, 0 to π.
     fn at(self, distance: f64) -> f64;
 
+    /// The sum of the densities at two distances.
+    #[inline(always)]
+    fn at_both(self, first: f64, second: f64) -> f64 {
+        self.at(first) + self.at(second)
+    }
+
+    /// Distance beyond which the density is below e^−32 of its peak.
+    fn reach(self) -> f64;
+
     /// Distance from the real axis at which a singularity stops a Gauss rule, in radians of the azimuth.
     fn analytic_height(self) -> f64;
 
@@ -26,11 +35,11 @@ pub(super) trait Density: Copy {
     fn is_smooth_at_pi(self) -> bool;
 }
 
-/// The density at any difference of two azimuths less than a turn apart.
+/// Distance on the circle between two azimuths less than a turn apart.
 #[inline(always)]
-pub(super) fn density_around<D: Density>(density: D, difference: f64) -> f64 {
+pub(super) fn distance_around(difference: f64) -> f64 {
     let distance = difference.abs();
-    density.at(distance.min(TAU - distance))
+    distance.min(TAU - distance)
 }
 
 /// See [`AzimuthalLobe::TrimmedLogistic`].
@@ -54,6 +63,20 @@ impl Density for TrimmedLogistic {
         let z = exp_of_negative(-distance * self.inverse_scale);
         let denominator = 1.0 + z;
         self.normalisation * z / (denominator * denominator)
+    }
+
+    /// With one division instead of two.
+    #[inline(always)]
+    fn at_both(self, first: f64, second: f64) -> f64 {
+        let y = exp_of_negative(-first * self.inverse_scale);
+        let z = exp_of_negative(-second * self.inverse_scale);
+        let (below_y, below_z) = ((1.0 + y) * (1.0 + y), (1.0 + z) * (1.0 + z));
+        self.normalisation * (y * below_z + z * below_y) / (below_y * below_z)
+    }
+
+    /// D(x) is below 4 e^{−x/s} D(0).
+    fn reach(self) -> f64 {
+        (32.0 + 4.0_f64.ln()) / self.inverse_scale
     }
 
     /// The logistic density has its poles at odd multiples of iπs.
@@ -93,10 +116,15 @@ impl Density for WrappedGaussian {
         self.normalisation * (image(0.0) + image(TAU) + image(-TAU))
     }
 
-    /// The density is entire, but grows as e^{y²/2β²} away from the axis. A pole at 1.6 β asks for as many nodes as
+    /// e^{−x²/2β²} at 8 β.
+    fn reach(self) -> f64 {
+        8.0 / (2.0 * self.half_inverse_variance).sqrt()
+    }
+
+    /// The density is entire, but grows as e^{y²/2β²} away from the axis. A pole at 2 β asks for as many nodes as
     /// that growth does, at the accuracy of this quadrature.
     fn analytic_height(self) -> f64 {
-        1.6 / (2.0 * self.half_inverse_variance).sqrt()
+        2.0 / (2.0 * self.half_inverse_variance).sqrt()
     }
 
     fn is_smooth_at_pi(self) -> bool {

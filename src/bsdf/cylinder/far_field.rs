@@ -21,7 +21,7 @@
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 use super::FibreAngles;
-use super::azimuthal::{Density, density_around};
+use super::azimuthal::{Density, distance_around};
 use super::quadrature::{MOST_NODES, PanelLengths, Rule, WIDTH_NODES, WIDTH_RULE, WidthRule};
 use crate::optics::elementary::{arc_sine_of_positive, exp_of_negative, sin_cos};
 
@@ -125,85 +125,133 @@ impl<D: Density> pulp::NullaryFnOnce for FarField<'_, D> {
             let length = (pair[1] - pair[0]) / parts as f64;
             for part in 0..parts {
                 let start = pair[0] + part as f64 * length;
-                let panel = Panel::new(&self.refraction, self.density, phi, self.longitudinal, start, length, rule);
+                let middle = start + 0.5 * length;
+                let active = match parts {
+                    1 => [true; 3],
+                    _ => active_lobes(&self.refraction, self.density, phi, middle, length),
+                };
+                if active == [false; 3] {
+                    continue;
+                }
+                let panel = Panel::new(&self.refraction, rule, middle, 0.5 * length);
+                let lobes = Lobes::new(&panel, self.density, phi, self.longitudinal, active);
                 for (value, &sigma_a) in self.values.iter_mut().zip(self.sigma_a) {
-                    *value += panel.sum(sigma_a);
+                    *value += lobes.reflected + lobes.transmitted(sigma_a, &panel.path[..panel.count]);
                 }
             }
         }
     }
 }
 
-/// What the nodes of one panel contribute, all that does not depend on absorption done. With T the transmittance of one
-/// pass, each node adds reflected + T (once + T twice).
+/// Which of R, TT and TRT a panel around `middle` adds anything to. No ψ_p is steeper than 2.
+fn active_lobes<D: Density>(refraction: &Refraction, density: D, phi: f64, middle: f64, length: f64) -> [bool; 3] {
+    let reach = density.reach() + length;
+    std::array::from_fn(|p| {
+        let p = p as f64;
+        let (turn, _) = refraction.turn(p, middle);
+        let x = phi - (p % 2.0) * PI;
+        distance_around(x - turn).min(distance_around(x + turn)) < reach
+    })
+}
+
+/// The nodes of one panel: what neither lobes nor absorption change.
 struct Panel {
     count: usize,
-    reflected: f64,
-    once: [f64; MOST_NODES],
-    twice: [f64; MOST_NODES],
+    /// 2γ.
+    turn: [f64; MOST_NODES],
+    /// 2γt.
+    turn_inside: [f64; MOST_NODES],
+    /// Share of the fibre's width.
+    weight: [f64; MOST_NODES],
+    /// f.
+    reflectance: [f64; MOST_NODES],
+    /// (1 − f)² times the weight.
+    entered: [f64; MOST_NODES],
     /// Length of one pass, in radii.
     path: [f64; MOST_NODES],
 }
 
 impl Panel {
     #[inline(always)]
-    fn new<D: Density>(
-        refraction: &Refraction,
-        density: D,
-        phi: f64,
-        longitudinal: [f64; 3],
-        start: f64,
-        length: f64,
-        rule: &Rule,
-    ) -> Self {
+    fn new(refraction: &Refraction, rule: &Rule, middle: f64, half_length: f64) -> Self {
         let mut panel = Self {
             count: rule.nodes.len(),
-            reflected: 0.0,
-            once: [0.0; MOST_NODES],
-            twice: [0.0; MOST_NODES],
+            turn: [0.0; MOST_NODES],
+            turn_inside: [0.0; MOST_NODES],
+            weight: [0.0; MOST_NODES],
+            reflectance: [0.0; MOST_NODES],
+            entered: [0.0; MOST_NODES],
             path: [0.0; MOST_NODES],
         };
-        let mut reflected = [0.0; MOST_NODES];
-        let half_length = 0.5 * length;
-        let middle = start + half_length;
-        let [m_reflected, m_once, m_twice] = longitudinal;
-
-        let nodes = rule.nodes.iter().zip(&rule.weights);
-        let terms = reflected.iter_mut().zip(&mut panel.once).zip(&mut panel.twice).zip(&mut panel.path);
-        for ((&node, &weight), (((reflected, once), twice), path)) in nodes.zip(terms) {
+        for (k, (&node, &weight)) in rule.nodes.iter().zip(&rule.weights).enumerate().take(MOST_NODES) {
             let gamma = middle + half_length * node;
             let (sin_gamma, cos_gamma) = sin_cos(gamma);
             let entry = refraction.enter(sin_gamma, cos_gamma);
-            let gamma_t = arc_sine_of_positive(entry.sin_gamma_t);
-            *path = entry.path;
-
-            // Blur the directions of exit of both halves of the fibre.
-            let turn = 2.0 * gamma;
-            let turn_once = 2.0 * gamma_t - turn;
-            let turn_twice = 4.0 * gamma_t - turn;
-            let both = |x: f64, turn: f64| density_around(density, x - turn) + density_around(density, x + turn);
-
             let weight = 0.5 * half_length * weight * cos_gamma;
-            let entered = weight * entry.transmittance * entry.transmittance;
-            *reflected = m_reflected * weight * entry.reflectance * both(phi, turn);
-            *once = m_once * entered * both(phi - PI, turn_once);
-            *twice = m_twice * entered * entry.reflectance * both(phi, turn_twice);
+            panel.turn[k] = 2.0 * gamma;
+            panel.turn_inside[k] = 2.0 * arc_sine_of_positive(entry.sin_gamma_t);
+            panel.weight[k] = weight;
+            panel.reflectance[k] = entry.reflectance;
+            panel.entered[k] = weight * entry.transmittance * entry.transmittance;
+            panel.path[k] = entry.path;
         }
-        panel.reflected = sum_in_lanes(&reflected[..panel.count]);
         panel
     }
+}
 
-    /// The panel's contribution at this absorption.
+/// What the nodes of one panel contribute, all done but absorption: with T the transmittance of one pass, a node adds
+/// reflected + T (once + T twice).
+struct Lobes {
+    reflected: f64,
+    once: [f64; MOST_NODES],
+    twice: [f64; MOST_NODES],
+}
+
+impl Lobes {
     #[inline(always)]
-    fn sum(&self, sigma_a: f64) -> f64 {
+    fn new<D: Density>(panel: &Panel, density: D, phi: f64, longitudinal: [f64; 3], active: [bool; 3]) -> Self {
+        let [m_reflected, m_once, m_twice] = longitudinal;
+        let mut lobes = Self { reflected: 0.0, once: [0.0; MOST_NODES], twice: [0.0; MOST_NODES] };
+        let count = panel.count.min(MOST_NODES);
+        if active[0] {
+            let mut reflected = [0.0; MOST_NODES];
+            for k in 0..count {
+                reflected[k] = panel.weight[k] * panel.reflectance[k] * density_of_halves(density, phi, panel.turn[k]);
+            }
+            lobes.reflected = m_reflected * sum_in_lanes(&reflected[..count]);
+        }
+        if active[1] {
+            for k in 0..count {
+                let turn = panel.turn_inside[k] - panel.turn[k];
+                lobes.once[k] = m_once * panel.entered[k] * density_of_halves(density, phi - PI, turn);
+            }
+        }
+        if active[2] {
+            for k in 0..count {
+                let turn = 2.0 * panel.turn_inside[k] - panel.turn[k];
+                let entered_and_back = panel.entered[k] * panel.reflectance[k];
+                lobes.twice[k] = m_twice * entered_and_back * density_of_halves(density, phi, turn);
+            }
+        }
+        lobes
+    }
+
+    /// What has gone through the fibre, at this absorption.
+    #[inline(always)]
+    fn transmitted(&self, sigma_a: f64, path: &[f64]) -> f64 {
         let mut terms = [0.0; MOST_NODES];
-        let amounts = self.once[..self.count].iter().zip(&self.twice).zip(&self.path);
-        for (term, ((&once, &twice), &path)) in terms.iter_mut().zip(amounts) {
+        for (((term, &once), &twice), &path) in terms.iter_mut().zip(&self.once).zip(&self.twice).zip(path) {
             let pass = exp_of_negative(-sigma_a * path);
             *term = pass * (once + pass * twice);
         }
-        self.reflected + sum_in_lanes(&terms[..self.count])
+        sum_in_lanes(&terms[..path.len()])
     }
+}
+
+/// D(x − ψ) + D(x + ψ): the two halves of the fibre turn light to opposite sides.
+#[inline(always)]
+fn density_of_halves<D: Density>(density: D, x: f64, turn: f64) -> f64 {
+    density.at_both(distance_around(x - turn), distance_around(x + turn))
 }
 
 /// Paths that are reflected inside twice or more, node by node over the width: each adds T³ entered / (1 − f T).

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 /// Nodes of the largest rule.
-pub(super) const MOST_NODES: usize = 64;
+pub(super) const MOST_NODES: usize = 48;
 
 /// Rules have a multiple of this many nodes, so that they fill whole vector registers.
 const NODE_STEP: usize = 8;
@@ -86,8 +86,13 @@ pub(super) struct Analyticity {
     pub(super) at_end: f64,
 }
 
-/// ln of the factor by which the error of a panel is pushed below its integrand: e^−28 is 7e-13.
-const CONVERGENCE: f64 = 28.0;
+/// ln of the factor by which a panel's error is pushed below its integrand, where singularities stand beside it. Paths that
+/// are reflected at once reach every azimuth, so that no value is below some 1e-4 of the peak; e^−22 is 3e-10.
+const CONVERGENCE_BESIDE: f64 = 22.0;
+
+/// The same for singularities above an end. Rules of 8 nodes need the larger factor, since the integrand grows on its way
+/// to a distant singularity.
+const CONVERGENCE_AT_END: f64 = 34.0;
 
 /// For each rule, the half-length of the longest panel on which it converges.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,12 +100,14 @@ pub(super) struct PanelLengths([f64; RULE_COUNT]);
 
 impl PanelLengths {
     /// A singularity at height y beside the middle gives ρ = e^τ with sinh τ = y/a; one at height y above the end gives
-    /// sinh²τ / cosh τ = y/a. The rule of n nodes needs 2nτ ≥ [`CONVERGENCE`]; both are solved for a.
+    /// sinh²τ / cosh τ = y/a. A rule of n nodes wants 2nτ to be a given number; both are solved for a.
     pub(super) fn new(analyticity: Analyticity) -> Self {
         Self(std::array::from_fn(|k| {
-            let tau = CONVERGENCE / (2 * NODE_STEP * (k + 1)) as f64;
-            let (sinh, cosh) = (tau.sinh(), tau.cosh());
-            (analyticity.beside / sinh).min(analyticity.at_end * cosh / (sinh * sinh))
+            let double_nodes = (2 * NODE_STEP * (k + 1)) as f64;
+            let beside = analyticity.beside / (CONVERGENCE_BESIDE / double_nodes).sinh();
+            let tau = CONVERGENCE_AT_END / double_nodes;
+            let at_end = analyticity.at_end * tau.cosh() / (tau.sinh() * tau.sinh());
+            beside.min(at_end)
         }))
     }
 
