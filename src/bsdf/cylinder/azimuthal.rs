@@ -16,14 +16,14 @@ pub enum AzimuthalLobe {
 
 /// A density of the azimuth, even and of period 2π.
 pub(super) trait Density: Copy {
+    /// The two halves of the fibre, seen at one azimuth.
+    type Halves: Halves;
+
     /// The density at a distance from its peak, 0 to π.
     fn at(self, distance: f64) -> f64;
 
-    /// The sum of the densities at two distances.
-    #[inline(always)]
-    fn at_both(self, first: f64, second: f64) -> f64 {
-        self.at(first) + self.at(second)
-    }
+    /// D(x − ψ) + D(x + ψ) as a function of ψ; `x` between 0 and π.
+    fn halves(self, x: f64) -> Self::Halves;
 
     /// Distance beyond which the density is below e^−32 of its peak.
     fn reach(self) -> f64;
@@ -33,6 +33,12 @@ pub(super) trait Density: Copy {
 
     /// Whether the kink opposite the peak is too weak to disturb a Gauss rule that crosses it.
     fn is_smooth_at_pi(self) -> bool;
+}
+
+/// D(x − ψ) + D(x + ψ) at a fixed x: the two halves of a fibre turn light to opposite sides.
+pub(super) trait Halves: Copy {
+    /// The sum at |ψ| between 0 and π.
+    fn at(self, turn: f64) -> f64;
 }
 
 /// Distance on the circle between two azimuths less than a turn apart.
@@ -57,7 +63,90 @@ impl TrimmedLogistic {
     }
 }
 
+impl TrimmedLogistic {
+    /// Whether [`LogisticHalves`] stays in the range of numbers: e^{2π/s} must.
+    pub(super) fn is_wide(self) -> bool {
+        2.0 * PI * self.inverse_scale < 700.0
+    }
+}
+
+/// Two logistic densities for one exponential and one division.
+///
+/// In D ∝ z/(1 + z)², z may be e^{x/s} as well as e^{−x/s}. With A = e^{−x/s}, B = e^{−|ψ|/s} and C = e^{−π/s} the one term is
+/// AB/(A + B)². The other is AB/(1 + AB)², or, where x + |ψ| passes π and is taken from 2π, C²AB/(AB + C²)². With
+/// p = AB/C both have the numerator AB, over (1 + Cp)² and (p + C)²; the smaller denominator is the right one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LogisticHalves {
+    inverse_scale: f64,
+    normalisation: f64,
+    /// A.
+    to_peak: f64,
+    /// C.
+    half_turn: f64,
+    /// A/C.
+    from_opposite: f64,
+}
+
+impl Halves for LogisticHalves {
+    #[inline(always)]
+    fn at(self, turn: f64) -> f64 {
+        let b = exp_of_negative(-turn * self.inverse_scale);
+        let p = self.from_opposite * b;
+        let first = self.to_peak + b;
+        let second = (p + self.half_turn).min(1.0 + self.half_turn * p);
+        // Neither product is squared, which would leave the range of numbers for narrow lobes.
+        let inverse = 1.0 / (first * second);
+        self.normalisation * (self.to_peak * b * inverse) * ((first * first + second * second) * inverse)
+    }
+}
+
+/// A trimmed logistic so narrow that [`LogisticHalves`] would leave the range of numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct NarrowLogistic(pub(super) TrimmedLogistic);
+
+impl Density for NarrowLogistic {
+    type Halves = PlainHalves<Self>;
+
+    #[inline(always)]
+    fn at(self, distance: f64) -> f64 {
+        self.0.at(distance)
+    }
+
+    #[inline(always)]
+    fn halves(self, x: f64) -> PlainHalves<Self> {
+        PlainHalves { density: self, x }
+    }
+
+    fn reach(self) -> f64 {
+        self.0.reach()
+    }
+
+    fn analytic_height(self) -> f64 {
+        self.0.analytic_height()
+    }
+
+    fn is_smooth_at_pi(self) -> bool {
+        self.0.is_smooth_at_pi()
+    }
+}
+
+/// Two densities, one after the other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PlainHalves<D> {
+    density: D,
+    x: f64,
+}
+
+impl<D: Density> Halves for PlainHalves<D> {
+    #[inline(always)]
+    fn at(self, turn: f64) -> f64 {
+        self.density.at((self.x - turn).abs()) + self.density.at(distance_around(self.x + turn))
+    }
+}
+
 impl Density for TrimmedLogistic {
+    type Halves = LogisticHalves;
+
     #[inline(always)]
     fn at(self, distance: f64) -> f64 {
         let z = exp_of_negative(-distance * self.inverse_scale);
@@ -65,13 +154,16 @@ impl Density for TrimmedLogistic {
         self.normalisation * z / (denominator * denominator)
     }
 
-    /// With one division instead of two.
     #[inline(always)]
-    fn at_both(self, first: f64, second: f64) -> f64 {
-        let y = exp_of_negative(-first * self.inverse_scale);
-        let z = exp_of_negative(-second * self.inverse_scale);
-        let (below_y, below_z) = ((1.0 + y) * (1.0 + y), (1.0 + z) * (1.0 + z));
-        self.normalisation * (y * below_z + z * below_y) / (below_y * below_z)
+    fn halves(self, x: f64) -> LogisticHalves {
+        let to_peak = (-x * self.inverse_scale).exp();
+        LogisticHalves {
+            inverse_scale: self.inverse_scale,
+            normalisation: self.normalisation,
+            to_peak,
+            half_turn: (-PI * self.inverse_scale).exp(),
+            from_opposite: ((PI - x) * self.inverse_scale).exp(),
+        }
     }
 
     /// D(x) is below 4 e^{−x/s} D(0).
@@ -106,6 +198,13 @@ impl WrappedGaussian {
 }
 
 impl Density for WrappedGaussian {
+    type Halves = PlainHalves<Self>;
+
+    #[inline(always)]
+    fn halves(self, x: f64) -> PlainHalves<Self> {
+        PlainHalves { density: self, x }
+    }
+
     /// The nearest three images; at β = 1 and π from the peak the next one is 5e-20.
     #[inline(always)]
     fn at(self, distance: f64) -> f64 {

@@ -21,7 +21,7 @@
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 use super::FibreAngles;
-use super::azimuthal::{Density, distance_around};
+use super::azimuthal::{Density, Halves, distance_around};
 use super::quadrature::{MOST_NODES, PanelLengths, Rule, WIDTH_NODES, WIDTH_RULE, WidthRule};
 use crate::optics::elementary::{arc_sine_of_positive, exp_of_negative, sin_cos};
 
@@ -213,24 +213,25 @@ impl Lobes {
         let [m_reflected, m_once, m_twice] = longitudinal;
         let mut lobes = Self { reflected: 0.0, once: [0.0; MOST_NODES], twice: [0.0; MOST_NODES] };
         let count = panel.count.min(MOST_NODES);
+        let (near, opposite) = (density.halves(phi), density.halves(PI - phi));
         if active[0] {
             let mut reflected = [0.0; MOST_NODES];
             for k in 0..count {
-                reflected[k] = panel.weight[k] * panel.reflectance[k] * density_of_halves(density, phi, panel.turn[k]);
+                reflected[k] = panel.weight[k] * panel.reflectance[k] * near.at(panel.turn[k]);
             }
             lobes.reflected = m_reflected * sum_in_lanes(&reflected[..count]);
         }
         if active[1] {
             for k in 0..count {
-                let turn = panel.turn_inside[k] - panel.turn[k];
-                lobes.once[k] = m_once * panel.entered[k] * density_of_halves(density, phi - PI, turn);
+                let turn = panel.turn[k] - panel.turn_inside[k];
+                lobes.once[k] = m_once * panel.entered[k] * opposite.at(turn);
             }
         }
         if active[2] {
             for k in 0..count {
-                let turn = 2.0 * panel.turn_inside[k] - panel.turn[k];
+                let turn = (2.0 * panel.turn_inside[k] - panel.turn[k]).abs();
                 let entered_and_back = panel.entered[k] * panel.reflectance[k];
-                lobes.twice[k] = m_twice * entered_and_back * density_of_halves(density, phi, turn);
+                lobes.twice[k] = m_twice * entered_and_back * near.at(turn);
             }
         }
         lobes
@@ -246,12 +247,6 @@ impl Lobes {
         }
         sum_in_lanes(&terms[..path.len()])
     }
-}
-
-/// D(x − ψ) + D(x + ψ): the two halves of the fibre turn light to opposite sides.
-#[inline(always)]
-fn density_of_halves<D: Density>(density: D, x: f64, turn: f64) -> f64 {
-    density.at_both(distance_around(x - turn), distance_around(x + turn))
 }
 
 /// Paths that are reflected inside twice or more, node by node over the width: each adds T³ entered / (1 − f T).

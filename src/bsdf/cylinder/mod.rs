@@ -35,7 +35,7 @@ pub use attenuation::Attenuation;
 pub use azimuthal::AzimuthalLobe;
 pub use longitudinal::LongitudinalMapping;
 
-use azimuthal::{TrimmedLogistic, WrappedGaussian};
+use azimuthal::{NarrowLogistic, TrimmedLogistic, WrappedGaussian};
 use far_field::{FarField, Refraction};
 use longitudinal::Longitudinal;
 use quadrature::{Analyticity, PanelLengths};
@@ -178,6 +178,7 @@ struct Group {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Lobe {
     Logistic(TrimmedLogistic),
+    Narrow(NarrowLogistic),
     Gaussian(WrappedGaussian),
 }
 
@@ -186,6 +187,7 @@ impl Lobe {
         use azimuthal::Density;
         match self {
             Self::Logistic(density) => density.analytic_height(),
+            Self::Narrow(density) => density.analytic_height(),
             Self::Gaussian(density) => density.analytic_height(),
         }
     }
@@ -203,7 +205,10 @@ impl Cylinder {
 
     fn from_checked(parameters: &CylinderParameters) -> Self {
         let lobe = match parameters.lobe {
-            AzimuthalLobe::TrimmedLogistic => Lobe::Logistic(TrimmedLogistic::new(parameters.beta_n)),
+            AzimuthalLobe::TrimmedLogistic => {
+                let density = TrimmedLogistic::new(parameters.beta_n);
+                if density.is_wide() { Lobe::Logistic(density) } else { Lobe::Narrow(NarrowLogistic(density)) }
+            }
             AzimuthalLobe::WrappedGaussian => Lobe::Gaussian(WrappedGaussian::new(parameters.beta_n)),
         };
         let mut groups: Vec<Group> = Vec::new();
@@ -245,6 +250,9 @@ impl Cylinder {
                 Lobe::Logistic(density) => {
                     arch.dispatch(FarField { density, panel_lengths, refraction, phi, longitudinal, sigma_a, values });
                 }
+                Lobe::Narrow(density) => {
+                    arch.dispatch(FarField { density, panel_lengths, refraction, phi, longitudinal, sigma_a, values });
+                }
                 Lobe::Gaussian(density) => {
                     arch.dispatch(FarField { density, panel_lengths, refraction, phi, longitudinal, sigma_a, values });
                 }
@@ -265,6 +273,9 @@ impl Cylinder {
             let refraction = Refraction::new(eta, angles);
             *value = match self.lobe {
                 Lobe::Logistic(density) => {
+                    near_field::near_field(density, &refraction, angles.phi, longitudinal, h, sigma_a)
+                }
+                Lobe::Narrow(density) => {
                     near_field::near_field(density, &refraction, angles.phi, longitudinal, h, sigma_a)
                 }
                 Lobe::Gaussian(density) => {
