@@ -216,7 +216,9 @@ fn far_field_agrees_with_brute_force() {
                 far_field_by_brute_force(&cylinder, eta, beta_n, &angles, &mut expected);
                 for ((found, expected), peak) in found.iter().zip(expected).zip(peak) {
                     let error = (found - expected).abs() / expected.max(1e-6 * peak);
-                    if error > worst { worst_value = expected / peak; }
+                    if error > worst {
+                        worst_value = expected / peak;
+                    }
                     worst = worst.max(error);
                 }
             }

@@ -22,7 +22,7 @@ use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 
 use super::FibreAngles;
 use super::azimuthal::{Density, Halves, distance_around};
-use super::quadrature::{MOST_NODES, PanelLengths, Rule, WIDTH_NODES, WIDTH_RULE, WidthRule};
+use super::quadrature::{Block, LANES, MOST_BLOCKS, PanelLengths, Rule, WIDTH_BLOCKS, WIDTH_RULE, WidthRule};
 use crate::optics::elementary::{arc_sine_of_positive, exp_of_negative, sin_cos};
 
 /// Most breaks that [`kinks`] can find, with the two ends.
@@ -136,7 +136,7 @@ impl<D: Density> pulp::NullaryFnOnce for FarField<'_, D> {
                 let panel = Panel::new(&self.refraction, rule, middle, 0.5 * length);
                 let lobes = Lobes::new(&panel, self.density, phi, self.longitudinal, active);
                 for (value, &sigma_a) in self.values.iter_mut().zip(self.sigma_a) {
-                    *value += lobes.reflected + lobes.transmitted(sigma_a, &panel.path[..panel.count]);
+                    *value += lobes.reflected + lobes.transmitted(sigma_a, &panel.path[..panel.blocks]);
                 }
             }
         }
@@ -156,44 +156,48 @@ fn active_lobes<D: Density>(refraction: &Refraction, density: D, phi: f64, middl
 
 /// The nodes of one panel: what neither lobes nor absorption change.
 struct Panel {
-    count: usize,
+    blocks: usize,
     /// 2γ.
-    turn: [f64; MOST_NODES],
+    turn: [Block; MOST_BLOCKS],
     /// 2γt.
-    turn_inside: [f64; MOST_NODES],
+    turn_inside: [Block; MOST_BLOCKS],
     /// Share of the fibre's width.
-    weight: [f64; MOST_NODES],
+    weight: [Block; MOST_BLOCKS],
     /// f.
-    reflectance: [f64; MOST_NODES],
+    reflectance: [Block; MOST_BLOCKS],
     /// (1 − f)² times the weight.
-    entered: [f64; MOST_NODES],
+    entered: [Block; MOST_BLOCKS],
     /// Length of one pass, in radii.
-    path: [f64; MOST_NODES],
+    path: [Block; MOST_BLOCKS],
 }
+
+const NOTHING: Block = [0.0; LANES];
 
 impl Panel {
     #[inline(always)]
     fn new(refraction: &Refraction, rule: &Rule, middle: f64, half_length: f64) -> Self {
         let mut panel = Self {
-            count: rule.nodes.len(),
-            turn: [0.0; MOST_NODES],
-            turn_inside: [0.0; MOST_NODES],
-            weight: [0.0; MOST_NODES],
-            reflectance: [0.0; MOST_NODES],
-            entered: [0.0; MOST_NODES],
-            path: [0.0; MOST_NODES],
+            blocks: rule.nodes.len(),
+            turn: [NOTHING; MOST_BLOCKS],
+            turn_inside: [NOTHING; MOST_BLOCKS],
+            weight: [NOTHING; MOST_BLOCKS],
+            reflectance: [NOTHING; MOST_BLOCKS],
+            entered: [NOTHING; MOST_BLOCKS],
+            path: [NOTHING; MOST_BLOCKS],
         };
-        for (k, (&node, &weight)) in rule.nodes.iter().zip(&rule.weights).enumerate().take(MOST_NODES) {
-            let gamma = middle + half_length * node;
-            let (sin_gamma, cos_gamma) = sin_cos(gamma);
-            let entry = refraction.enter(sin_gamma, cos_gamma);
-            let weight = 0.5 * half_length * weight * cos_gamma;
-            panel.turn[k] = 2.0 * gamma;
-            panel.turn_inside[k] = 2.0 * arc_sine_of_positive(entry.sin_gamma_t);
-            panel.weight[k] = weight;
-            panel.reflectance[k] = entry.reflectance;
-            panel.entered[k] = weight * entry.transmittance * entry.transmittance;
-            panel.path[k] = entry.path;
+        for (block, (nodes, weights)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
+            for lane in 0..LANES {
+                let gamma = middle + half_length * nodes[lane];
+                let (sin_gamma, cos_gamma) = sin_cos(gamma);
+                let entry = refraction.enter(sin_gamma, cos_gamma);
+                let weight = 0.5 * half_length * weights[lane] * cos_gamma;
+                panel.turn[block][lane] = 2.0 * gamma;
+                panel.turn_inside[block][lane] = 2.0 * arc_sine_of_positive(entry.sin_gamma_t);
+                panel.weight[block][lane] = weight;
+                panel.reflectance[block][lane] = entry.reflectance;
+                panel.entered[block][lane] = weight * entry.transmittance * entry.transmittance;
+                panel.path[block][lane] = entry.path;
+            }
         }
         panel
     }
@@ -203,35 +207,42 @@ impl Panel {
 /// reflected + T (once + T twice).
 struct Lobes {
     reflected: f64,
-    once: [f64; MOST_NODES],
-    twice: [f64; MOST_NODES],
+    once: [Block; MOST_BLOCKS],
+    twice: [Block; MOST_BLOCKS],
 }
 
 impl Lobes {
     #[inline(always)]
     fn new<D: Density>(panel: &Panel, density: D, phi: f64, longitudinal: [f64; 3], active: [bool; 3]) -> Self {
         let [m_reflected, m_once, m_twice] = longitudinal;
-        let mut lobes = Self { reflected: 0.0, once: [0.0; MOST_NODES], twice: [0.0; MOST_NODES] };
-        let count = panel.count.min(MOST_NODES);
+        let mut lobes = Self { reflected: 0.0, once: [NOTHING; MOST_BLOCKS], twice: [NOTHING; MOST_BLOCKS] };
+        let blocks = panel.blocks.min(MOST_BLOCKS);
         let (near, opposite) = (density.halves(phi), density.halves(PI - phi));
         if active[0] {
-            let mut reflected = [0.0; MOST_NODES];
-            for k in 0..count {
-                reflected[k] = panel.weight[k] * panel.reflectance[k] * near.at(panel.turn[k]);
+            let mut reflected = NOTHING;
+            for block in 0..blocks {
+                for lane in 0..LANES {
+                    let share = panel.weight[block][lane] * panel.reflectance[block][lane];
+                    reflected[lane] += share * near.at(panel.turn[block][lane]);
+                }
             }
-            lobes.reflected = m_reflected * sum_in_lanes(&reflected[..count]);
+            lobes.reflected = m_reflected * sum(reflected);
         }
         if active[1] {
-            for k in 0..count {
-                let turn = panel.turn[k] - panel.turn_inside[k];
-                lobes.once[k] = m_once * panel.entered[k] * opposite.at(turn);
+            for block in 0..blocks {
+                for lane in 0..LANES {
+                    let turn = panel.turn[block][lane] - panel.turn_inside[block][lane];
+                    lobes.once[block][lane] = m_once * panel.entered[block][lane] * opposite.at(turn);
+                }
             }
         }
         if active[2] {
-            for k in 0..count {
-                let turn = (2.0 * panel.turn_inside[k] - panel.turn[k]).abs();
-                let entered_and_back = panel.entered[k] * panel.reflectance[k];
-                lobes.twice[k] = m_twice * entered_and_back * near.at(turn);
+            for block in 0..blocks {
+                for lane in 0..LANES {
+                    let turn = (2.0 * panel.turn_inside[block][lane] - panel.turn[block][lane]).abs();
+                    let entered_and_back = panel.entered[block][lane] * panel.reflectance[block][lane];
+                    lobes.twice[block][lane] = m_twice * entered_and_back * near.at(turn);
+                }
             }
         }
         lobes
@@ -239,33 +250,38 @@ impl Lobes {
 
     /// What has gone through the fibre, at this absorption.
     #[inline(always)]
-    fn transmitted(&self, sigma_a: f64, path: &[f64]) -> f64 {
-        let mut terms = [0.0; MOST_NODES];
-        for (((term, &once), &twice), &path) in terms.iter_mut().zip(&self.once).zip(&self.twice).zip(path) {
-            let pass = exp_of_negative(-sigma_a * path);
-            *term = pass * (once + pass * twice);
+    fn transmitted(&self, sigma_a: f64, path: &[Block]) -> f64 {
+        let mut transmitted = NOTHING;
+        for ((once, twice), path) in self.once.iter().zip(&self.twice).zip(path) {
+            for lane in 0..LANES {
+                let pass = exp_of_negative(-sigma_a * path[lane]);
+                transmitted[lane] += pass * (once[lane] + pass * twice[lane]);
+            }
         }
-        sum_in_lanes(&terms[..path.len()])
+        sum(transmitted)
     }
 }
 
 /// Paths that are reflected inside twice or more, node by node over the width: each adds T³ entered / (1 − f T).
 struct LaterPaths {
-    entered: [f64; WIDTH_NODES],
-    reflectance: [f64; WIDTH_NODES],
-    path: [f64; WIDTH_NODES],
+    entered: [Block; WIDTH_BLOCKS],
+    reflectance: [Block; WIDTH_BLOCKS],
+    path: [Block; WIDTH_BLOCKS],
 }
 
 impl LaterPaths {
     #[inline(always)]
     fn new(refraction: &Refraction, rule: &WidthRule) -> Self {
-        let mut later = Self { entered: [0.0; WIDTH_NODES], reflectance: [0.0; WIDTH_NODES], path: [0.0; WIDTH_NODES] };
-        for k in 0..WIDTH_NODES {
-            let entry = refraction.enter(rule.sin_gamma[k], rule.cos_gamma[k]);
-            let entered_and_back = entry.transmittance * entry.reflectance;
-            later.entered[k] = rule.weights[k] * entered_and_back * entered_and_back;
-            later.reflectance[k] = entry.reflectance;
-            later.path[k] = entry.path;
+        let nothing = [NOTHING; WIDTH_BLOCKS];
+        let mut later = Self { entered: nothing, reflectance: nothing, path: nothing };
+        for block in 0..WIDTH_BLOCKS {
+            for lane in 0..LANES {
+                let entry = refraction.enter(rule.sin_gamma[block][lane], rule.cos_gamma[block][lane]);
+                let entered_and_back = entry.transmittance * entry.reflectance;
+                later.entered[block][lane] = rule.weights[block][lane] * entered_and_back * entered_and_back;
+                later.reflectance[block][lane] = entry.reflectance;
+                later.path[block][lane] = entry.path;
+            }
         }
         later
     }
@@ -273,25 +289,21 @@ impl LaterPaths {
     /// Mean of A_3+ at this absorption.
     #[inline(always)]
     fn sum(&self, sigma_a: f64) -> f64 {
-        let mut terms = [0.0; WIDTH_NODES];
-        for k in 0..WIDTH_NODES {
-            let pass = exp_of_negative(-sigma_a * self.path[k]);
-            terms[k] = self.entered[k] * pass * pass * pass / (1.0 - self.reflectance[k] * pass);
+        let mut left = NOTHING;
+        for block in 0..WIDTH_BLOCKS {
+            for lane in 0..LANES {
+                let pass = exp_of_negative(-sigma_a * self.path[block][lane]);
+                left[lane] +=
+                    self.entered[block][lane] * pass * pass * pass / (1.0 - self.reflectance[block][lane] * pass);
+            }
         }
-        sum_in_lanes(&terms)
+        sum(left)
     }
 }
 
-/// Sum of a multiple of eight numbers, as eight partial sums: an order that vector registers can keep.
+/// Sum of the eight lanes, always in the same order.
 #[inline(always)]
-fn sum_in_lanes(terms: &[f64]) -> f64 {
-    let mut lanes = [0.0; 8];
-    for chunk in terms.chunks_exact(8) {
-        for (lane, term) in lanes.iter_mut().zip(chunk) {
-            *lane += term;
-        }
-    }
-    let [a, b, c, d, e, f, g, h] = lanes;
+fn sum([a, b, c, d, e, f, g, h]: Block) -> f64 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 

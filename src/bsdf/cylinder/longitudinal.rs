@@ -97,6 +97,18 @@ const CHEBYSHEV: [f64; CHEBYSHEV_TERMS] = [
     -4.830_504_485_964_010_5e-18,
 ];
 
+/// 1/k² for k = 1, 2, … 20.
+const INVERSE_SQUARES: [f64; 20] = {
+    let mut inverse_squares = [0.0; 20];
+    let mut k = 0;
+    while k < 20 {
+        let number = (k + 1) as f64;
+        inverse_squares[k] = 1.0 / (number * number);
+        k += 1;
+    }
+    inverse_squares
+};
+
 /// e^{−x} I₀(x) for x ≥ 0, relative error below 1e-15.
 ///
 /// Up to 8 by the power series Σ (x²/4)^k / k!², whose terms are all positive and fall below 1e-17 of the sum at k = 21;
@@ -104,10 +116,7 @@ const CHEBYSHEV: [f64; CHEBYSHEV_TERMS] = [
 pub(super) fn scaled_bessel_i0(x: f64) -> f64 {
     if x <= 8.0 {
         let quarter_square = 0.25 * x * x;
-        let mut series = 1.0;
-        for k in (1..=20_i32).rev() {
-            series = 1.0 + series * quarter_square * (1.0 / f64::from(k * k));
-        }
+        let series = INVERSE_SQUARES.iter().rev().fold(1.0, |series, factor| 1.0 + series * (quarter_square * factor));
         return series * (-x).exp();
     }
     // Clenshaw's recurrence.

@@ -2,29 +2,32 @@
 
 use std::sync::LazyLock;
 
-/// Nodes of the largest rule.
-pub(super) const MOST_NODES: usize = 48;
+/// Numbers in a block: what the widest vector registers hold. A loop over the lanes of one block becomes vector
+/// instructions as a whole; rules have whole blocks of nodes, so that none is left over.
+pub(super) const LANES: usize = 8;
 
-/// Rules have a multiple of this many nodes, so that they fill whole vector registers.
-const NODE_STEP: usize = 8;
+/// A number for each of eight nodes.
+pub(super) type Block = [f64; LANES];
 
-const RULE_COUNT: usize = MOST_NODES / NODE_STEP;
+/// Blocks of the largest rule.
+pub(super) const MOST_BLOCKS: usize = 6;
 
 /// Nodes in (−1, 1) and weights that sum to 2.
 #[derive(Debug, Clone)]
 pub(super) struct Rule {
-    pub(super) nodes: Vec<f64>,
-    pub(super) weights: Vec<f64>,
+    pub(super) nodes: Vec<Block>,
+    pub(super) weights: Vec<Block>,
 }
 
-/// The rules with 8, 16, … [`MOST_NODES`] nodes.
-static RULES: LazyLock<Vec<Rule>> = LazyLock::new(|| (1..=RULE_COUNT).map(|k| Rule::new(k * NODE_STEP)).collect());
+/// The rules with 1, 2, … [`MOST_BLOCKS`] blocks of nodes.
+static RULES: LazyLock<Vec<Rule>> = LazyLock::new(|| (1..=MOST_BLOCKS).map(Rule::new).collect());
 
 impl Rule {
     /// Roots of the Legendre polynomial by Newton's method from Tricomi's first guess; ascending.
-    pub(super) fn new(count: usize) -> Self {
+    fn new(blocks: usize) -> Self {
+        let count = blocks * LANES;
         let n = count as f64;
-        let (nodes, weights) = (0..count)
+        let (nodes, weights): (Vec<f64>, Vec<f64>) = (0..count)
             .map(|k| {
                 let mut x = -(std::f64::consts::PI * (k as f64 + 0.75) / (n + 0.5)).cos();
                 let mut slope = 0.0;
@@ -42,12 +45,12 @@ impl Rule {
                 (x, 2.0 / ((1.0 - x * x) * slope * slope))
             })
             .unzip();
-        Self { nodes, weights }
+        Self { nodes: nodes.as_chunks().0.to_vec(), weights: weights.as_chunks().0.to_vec() }
     }
 }
 
-/// Nodes of [`WidthRule`].
-pub(super) const WIDTH_NODES: usize = 24;
+/// Blocks of [`WidthRule`].
+pub(super) const WIDTH_BLOCKS: usize = 3;
 
 /// Mean over the width of a fibre of something that does not depend on azimuths.
 ///
@@ -55,23 +58,31 @@ pub(super) const WIDTH_NODES: usize = 24;
 /// f is 1 there. Nodes in u with γ = (1 − u²) π/2 crowd towards it: the error stays below 1e-13 however near it comes.
 #[derive(Debug, Clone)]
 pub(super) struct WidthRule {
-    pub(super) sin_gamma: [f64; WIDTH_NODES],
-    pub(super) cos_gamma: [f64; WIDTH_NODES],
+    pub(super) sin_gamma: [Block; WIDTH_BLOCKS],
+    pub(super) cos_gamma: [Block; WIDTH_BLOCKS],
     /// Sum to 1.
-    pub(super) weights: [f64; WIDTH_NODES],
+    pub(super) weights: [Block; WIDTH_BLOCKS],
 }
 
 /// The one rule of this kind.
 pub(super) static WIDTH_RULE: LazyLock<WidthRule> = LazyLock::new(|| {
-    let rule = Rule::new(WIDTH_NODES);
-    let u: [f64; WIDTH_NODES] = std::array::from_fn(|k| 0.5 * (1.0 + rule.nodes[k]));
-    let complement = u.map(|u| u * u * std::f64::consts::FRAC_PI_2);
-    WidthRule {
-        sin_gamma: complement.map(f64::cos),
-        cos_gamma: complement.map(f64::sin),
-        // dh = cosγ dγ, dγ = π u du, du = half the weight on (−1, 1).
-        weights: std::array::from_fn(|k| complement[k].sin() * std::f64::consts::PI * u[k] * 0.5 * rule.weights[k]),
+    let rule = &RULES[WIDTH_BLOCKS - 1];
+    let mut width = WidthRule {
+        sin_gamma: [[0.0; LANES]; WIDTH_BLOCKS],
+        cos_gamma: [[0.0; LANES]; WIDTH_BLOCKS],
+        weights: [[0.0; LANES]; WIDTH_BLOCKS],
+    };
+    for block in 0..WIDTH_BLOCKS {
+        for lane in 0..LANES {
+            let u = 0.5 * (1.0 + rule.nodes[block][lane]);
+            let (cos_gamma, sin_gamma) = (u * u * std::f64::consts::FRAC_PI_2).sin_cos();
+            width.sin_gamma[block][lane] = sin_gamma;
+            width.cos_gamma[block][lane] = cos_gamma;
+            // dh = cosγ dγ and dγ = π u du; u runs over half the range of the rule.
+            width.weights[block][lane] = cos_gamma * std::f64::consts::PI * u * 0.5 * rule.weights[block][lane];
+        }
     }
+    width
 });
 
 /// How far an integrand stays analytic, which decides how fast a Gauss rule converges.
@@ -90,20 +101,20 @@ pub(super) struct Analyticity {
 /// are reflected at once reach every azimuth, so that no value is below some 1e-4 of the peak; e^−22 is 3e-10.
 const CONVERGENCE_BESIDE: f64 = 22.0;
 
-/// The same for singularities above an end. Rules of 8 nodes need the larger factor, since the integrand grows on its way
+/// The same for singularities above an end. Rules of few nodes need the larger factor, since the integrand grows on its way
 /// to a distant singularity.
 const CONVERGENCE_AT_END: f64 = 34.0;
 
 /// For each rule, the half-length of the longest panel on which it converges.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct PanelLengths([f64; RULE_COUNT]);
+pub(super) struct PanelLengths([f64; MOST_BLOCKS]);
 
 impl PanelLengths {
     /// A singularity at height y beside the middle gives ρ = e^τ with sinh τ = y/a; one at height y above the end gives
     /// sinh²τ / cosh τ = y/a. A rule of n nodes wants 2nτ to be a given number; both are solved for a.
     pub(super) fn new(analyticity: Analyticity) -> Self {
         Self(std::array::from_fn(|k| {
-            let double_nodes = (2 * NODE_STEP * (k + 1)) as f64;
+            let double_nodes = (2 * LANES * (k + 1)) as f64;
             let beside = analyticity.beside / (CONVERGENCE_BESIDE / double_nodes).sinh();
             let tau = CONVERGENCE_AT_END / double_nodes;
             let at_end = analyticity.at_end * tau.cosh() / (tau.sinh() * tau.sinh());
@@ -114,11 +125,11 @@ impl PanelLengths {
     /// Equal parts into which a panel of this length is cut, and the rule for each part.
     pub(super) fn plan(&self, length: f64) -> (usize, &'static Rule) {
         let half = 0.5 * length;
-        let longest = self.0[RULE_COUNT - 1];
+        let longest = self.0[MOST_BLOCKS - 1];
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive whole number")]
         let parts = (half / longest).ceil().max(1.0) as usize;
         let half = half / parts as f64;
-        let rule = self.0.iter().position(|&reach| half <= reach).unwrap_or(RULE_COUNT - 1);
+        let rule = self.0.iter().position(|&reach| half <= reach).unwrap_or(MOST_BLOCKS - 1);
         (parts, &RULES[rule])
     }
 }
@@ -131,10 +142,12 @@ mod tests {
     #[test]
     fn rules_integrate_polynomials_exactly() {
         for rule in RULES.iter() {
-            let count = rule.nodes.len();
+            let nodes = rule.nodes.as_flattened();
+            let weights = rule.weights.as_flattened();
+            let count = nodes.len();
             for degree in [0, 2, count, 2 * count - 2] {
-                let found: f64 =
-                    rule.nodes.iter().zip(&rule.weights).map(|(x, w)| w * x.powi(i32::try_from(degree).unwrap())).sum();
+                let power = i32::try_from(degree).unwrap();
+                let found: f64 = nodes.iter().zip(weights).map(|(x, w)| w * x.powi(power)).sum();
                 let expected = if degree % 2 == 0 { 2.0 / (degree as f64 + 1.0) } else { 0.0 };
                 assert!((found - expected).abs() < 1e-14, "{count} nodes, degree {degree}: {found} not {expected}");
             }
