@@ -65,8 +65,21 @@ fn far_field(criterion: &mut Criterion) {
             bencher.iter(|| total(black_box(&pairs), |angles, values| cylinder.far_field(angles, values)));
         });
     }
+    let table = Cylinder::new(&parameters(0.3)).unwrap().tabulate(1e-4);
+    println!("table: {} bytes, error {:.1e}", table.bytes(), table.error());
+    group.bench_function("tabulated, beta_n 0.3", |bencher| {
+        bencher.iter(|| total(black_box(&pairs), |angles, values| table.far_field(angles, values)));
+    });
     group.finish();
 }
 
-criterion_group!(benches, far_field);
+/// Time to build the table of the benchmark above, all cores.
+fn tabulation(criterion: &mut Criterion) {
+    let cylinder = Cylinder::new(&parameters(0.3)).unwrap();
+    criterion.bench_function("cylinder, build table, beta_n 0.3", |bencher| {
+        bencher.iter(|| black_box(&cylinder).tabulate(1e-4).error());
+    });
+}
+
+criterion_group!(benches, far_field, tabulation);
 criterion_main!(benches);

@@ -27,6 +27,7 @@ mod far_field;
 mod longitudinal;
 mod near_field;
 mod quadrature;
+mod tabulated;
 
 use super::{Bsdf, Direction, Model};
 use crate::parameter::{Parameter, Spread};
@@ -34,6 +35,7 @@ use crate::parameter::{Parameter, Spread};
 pub use attenuation::Attenuation;
 pub use azimuthal::AzimuthalLobe;
 pub use longitudinal::LongitudinalMapping;
+pub use tabulated::TabulatedCylinder;
 
 use azimuthal::{NarrowLogistic, TrimmedLogistic, WrappedGaussian};
 use far_field::{FarField, Refraction};
@@ -238,7 +240,11 @@ impl Cylinder {
     /// If `values` is not one number a channel.
     pub fn far_field(&self, angles: &FibreAngles, values: &mut [f64]) {
         assert_eq!(values.len(), self.channel_count(), "one value a channel");
-        let longitudinal = self.longitudinal.evaluate(angles);
+        self.sum_lobes(angles, self.longitudinal.evaluate(angles), values);
+    }
+
+    /// Σ M_p N_p for given M_p.
+    fn sum_lobes(&self, angles: &FibreAngles, longitudinal: [f64; 3], values: &mut [f64]) {
         let arch = pulp::Arch::new();
         let mut rest = values;
         for group in &self.groups {
