@@ -6,6 +6,7 @@
 //! the rest for each pair of directions. The loop over channels is the innermost one and runs over contiguous memory.
 
 pub mod cylinder;
+pub mod spongy_barb;
 
 use nalgebra::Vector3;
 

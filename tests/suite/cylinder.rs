@@ -3,8 +3,11 @@
 use std::f64::consts::PI;
 
 use barbule::bsdf::cylinder::{
-    AzimuthalLobe, Cylinder, CylinderParameters, FibreAngles, LongitudinalMapping, mean_attenuation,
+    AzimuthalLobe, Cylinder, CylinderModel, CylinderParameters, FibreAngles, FibreIndex, LongitudinalMapping,
+    mean_attenuation,
 };
+use barbule::bsdf::spongy_barb::{SpongeBand, SpongyBarb};
+use barbule::bsdf::{Direction, Model};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -102,7 +105,7 @@ fn white_furnace() {
 /// ∫ f(θ, φ) cosθ dθ dφ over the sphere around a fibre: Simpson's rule in θ, since the integrand does not end smoothly
 /// at the poles, and midpoints in φ, in which f is even and periodic.
 fn sphere_integral(f: impl Fn(f64, f64) -> f64) -> f64 {
-    let (inclinations, azimuths) = (1200, 120);
+    let (inclinations, azimuths) = (800, 60);
     let ring = |i: i32| {
         let theta = (f64::from(i) / f64::from(inclinations) - 0.5) * PI;
         let sum: f64 = (0..azimuths).map(|k| f(theta, (f64::from(k) + 0.5) / f64::from(azimuths) * PI)).sum();
@@ -187,7 +190,6 @@ fn far_field_agrees_with_brute_force() {
     for lobe in [AzimuthalLobe::TrimmedLogistic, AzimuthalLobe::WrappedGaussian] {
         for beta_n in [0.05, 0.1, 0.2, 0.3, 0.31, 0.4, 0.6, 0.9] {
             let mut worst: f64 = 0.0;
-            let mut worst_value: f64 = 0.0;
             for _ in 0..60 {
                 let eta = [1.1, 1.35, 1.55, 1.8, 2.4][random.random_range(0..5)];
                 let sigma_a = [0.0, 0.01, random.random_range(0.0..2.0), 10.0];
@@ -216,14 +218,206 @@ fn far_field_agrees_with_brute_force() {
                 far_field_by_brute_force(&cylinder, eta, beta_n, &angles, &mut expected);
                 for ((found, expected), peak) in found.iter().zip(expected).zip(peak) {
                     let error = (found - expected).abs() / expected.max(1e-6 * peak);
-                    if error > worst {
-                        worst_value = expected / peak;
-                    }
                     worst = worst.max(error);
                 }
             }
-            println!("{lobe:?} β_n {beta_n}: worst error {worst:e} at {worst_value:e} of peak");
+            println!("{lobe:?} β_n {beta_n}: worst error {worst:e}");
             assert!(worst < 1e-6, "{lobe:?} β_n {beta_n}: {worst:e}");
         }
     }
+}
+
+/// The model's known asymmetry: for a fixed light the same integral is not 1. Its range over lights, roughness and index is the
+/// one that the model's page states.
+#[test]
+fn asymmetry_stays_in_its_documented_range() {
+    let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+    for (beta_m, beta_n) in [(0.1, 0.6), (0.3, 0.6), (0.6, 0.6)] {
+        let cylinder = fibre(beta_m, beta_n, 1.55, &[0.0]);
+        for theta_i in [0.0, 0.9, 1.2, 1.35, 1.45, 1.52] {
+            let found = sphere_integral(|theta, phi| {
+                let mut value = [0.0];
+                cylinder.far_field(&FibreAngles::new(theta_i, theta, phi), &mut value);
+                value[0]
+            });
+            println!("β_m {beta_m}, light at {theta_i}: {found}");
+            least = least.min(found);
+            most = most.max(found);
+        }
+    }
+    println!("∫ S dωo from {least} to {most}");
+    assert!((least - 0.72).abs() < 0.01 && (most - 1.05).abs() < 0.01);
+}
+
+#[test]
+fn tables_keep_their_error() {
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    for lobe in [AzimuthalLobe::TrimmedLogistic, AzimuthalLobe::WrappedGaussian] {
+        let cylinder = Cylinder::new(&CylinderParameters {
+            eta: vec![1.55, 1.55, 1.55, 1.5, 1.5, 1.5],
+            sigma_a: vec![0.0, 0.2, 1.0, 0.05, 0.5, 3.0],
+            beta_m: 0.3,
+            beta_n: 0.4,
+            mapping: LongitudinalMapping::Plain,
+            lobe,
+        })
+        .unwrap();
+        let table = cylinder.tabulate(1e-4);
+        assert!(table.error() <= 1e-4, "{}", table.error());
+        let mut worst: f64 = 0.0;
+        for _ in 0..100 {
+            let theta_o = random.random_range(-1.57..1.57);
+            let theta_i = -theta_o + random.random_range(-0.3..0.3);
+            let (mut peak, mut error) = ([0.0_f64; 6], [0.0_f64; 6]);
+            for _ in 0..100 {
+                let angles = FibreAngles::new(theta_i, theta_o, random.random_range(-10.0..10.0));
+                let (mut exact, mut found) = ([0.0; 6], [0.0; 6]);
+                cylinder.far_field(&angles, &mut exact);
+                table.far_field(&angles, &mut found);
+                for c in 0..6 {
+                    peak[c] = peak[c].max(exact[c]);
+                    error[c] = error[c].max((found[c] - exact[c]).abs());
+                }
+            }
+            worst = peak.iter().zip(error).map(|(peak, error)| error / peak).fold(worst, f64::max);
+        }
+        println!("{lobe:?}: {} bytes, stated {:e}, found {worst:e}", table.bytes(), table.error());
+        assert!(worst <= 1e-4, "{worst:e}");
+    }
+}
+
+#[test]
+fn impossible_fibres_are_refused_in_a_sentence() {
+    let good = CylinderParameters {
+        eta: vec![1.55; 3],
+        sigma_a: vec![0.2; 3],
+        beta_m: 0.3,
+        beta_n: 0.3,
+        mapping: LongitudinalMapping::Chiang,
+        lobe: AzimuthalLobe::TrimmedLogistic,
+    };
+    assert!(Cylinder::new(&good).is_ok());
+    let refused = |change: &dyn Fn(&mut CylinderParameters)| {
+        let mut bad = good.clone();
+        change(&mut bad);
+        Cylinder::new(&bad).unwrap_err().to_string()
+    };
+    for eta in [1.0, 0.9, -1.5, 6.0, f64::NAN, f64::INFINITY] {
+        assert!(refused(&|bad| bad.eta[1] = eta).starts_with("the refractive index of a fibre must be above 1"));
+    }
+    for beta in [0.0, -0.1, 1.01, f64::NAN] {
+        assert!(
+            refused(&|bad| bad.beta_m = beta).starts_with("the roughness beta_m of a fibre must be between 0.01 and 1")
+        );
+        assert!(
+            refused(&|bad| bad.beta_n = beta).starts_with("the roughness beta_n of a fibre must be between 0.01 and 1")
+        );
+    }
+    for sigma_a in [-0.1, f64::NAN, f64::INFINITY] {
+        assert!(refused(&|bad| bad.sigma_a[2] = sigma_a).starts_with("the absorption sigma_a of channel 2 must be"));
+    }
+    assert!(refused(&|bad| bad.eta.truncate(1)).contains("1 indices and 3 absorptions"));
+    for wavelengths in [vec![645.0, 645.0], vec![0.0], vec![f64::NAN]] {
+        assert!(rgb_model(&wavelengths, FibreIndex::Shared).is_err());
+    }
+}
+
+fn rgb_model(
+    wavelengths_nm: &[f64],
+    index: FibreIndex,
+) -> Result<CylinderModel, barbule::bsdf::cylinder::CylinderError> {
+    CylinderModel::new(wavelengths_nm, index, LongitudinalMapping::Chiang, AzimuthalLobe::TrimmedLogistic)
+}
+
+/// One index a channel, all equal, is one index for all: to the last bit, whatever the number of channels.
+#[test]
+fn parameters_are_named_by_wavelength_and_channels_are_independent() {
+    let shared = rgb_model(&[645.0, 525.5, 445.0], FibreIndex::Shared).unwrap();
+    let separate = rgb_model(&[645.0, 525.5, 445.0], FibreIndex::PerChannel).unwrap();
+    let names =
+        |model: &CylinderModel| model.parameters().iter().map(|parameter| parameter.name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&shared), ["eta", "beta_m", "beta_n", "sigma_a@645", "sigma_a@525.5", "sigma_a@445"]);
+    assert_eq!(names(&separate)[..4], ["eta@645", "eta@525.5", "eta@445", "beta_m"]);
+
+    let (incoming, outgoing) = (Direction::new(0.1, 0.3, 0.9).normalize(), Direction::new(-0.2, 0.7, -0.4).normalize());
+    let (mut one, mut three, mut alone) = ([0.0; 3], [0.0; 3], [0.0; 1]);
+    shared.bind(&[1.5, 0.3, 0.25, 0.1, 0.2, 0.7]).evaluate(&incoming, &outgoing, &mut one);
+    separate.bind(&[1.5, 1.5, 1.5, 0.3, 0.25, 0.1, 0.2, 0.7]).evaluate(&incoming, &outgoing, &mut three);
+    let single = rgb_model(&[445.0], FibreIndex::Shared).unwrap();
+    single.bind(&[1.5, 0.3, 0.25, 0.7]).evaluate(&incoming, &outgoing, &mut alone);
+    assert_eq!(one.map(f64::to_bits), three.map(f64::to_bits));
+    assert_eq!(one[2].to_bits(), alone[0].to_bits());
+
+    // f is S over the cosine of the light.
+    let mut scattering = [0.0; 3];
+    fibre(0.3, 0.25, 1.5, &[0.1, 0.2, 0.7]).far_field(&FibreAngles::between(&incoming, &outgoing), &mut scattering);
+    for (f, s) in one.iter().zip(scattering) {
+        assert!((f * incoming.z.abs() / s - 1.0).abs() < 1e-14);
+    }
+}
+
+/// Values inside the declared bounds always give finite results, in every direction.
+#[test]
+fn bounds_are_safe() {
+    let model = rgb_model(&[645.0], FibreIndex::Shared).unwrap();
+    let corners: Vec<Vec<f64>> = (0..16)
+        .map(|corner| {
+            let bound = |(k, parameter): (usize, &barbule::parameter::Parameter)| {
+                if corner >> k & 1 == 0 { parameter.lower } else { parameter.upper }
+            };
+            model.parameters().iter().enumerate().map(bound).collect()
+        })
+        .collect();
+    let directions = [
+        Direction::x(),
+        -Direction::x(),
+        Direction::y(),
+        Direction::z(),
+        -Direction::z(),
+        Direction::new(1.0, 1e-9, 0.0),
+        Direction::new(0.6, 0.0, 0.8),
+        Direction::new(-0.6, 0.8, 0.0),
+    ];
+    for corner in corners {
+        let bound = model.bind(&corner);
+        for incoming in &directions {
+            for outgoing in &directions {
+                let mut value = [f64::NAN];
+                bound.evaluate(incoming, outgoing, &mut value);
+                assert!(
+                    value[0].is_finite() && value[0] >= 0.0,
+                    "{corner:?}, {incoming:?}, {outgoing:?}: {}",
+                    value[0]
+                );
+            }
+        }
+    }
+}
+
+/// A sponge moves light, it neither makes nor takes any; and it prefers the way back.
+#[test]
+fn spongy_barb_keeps_the_furnace() {
+    let cylinder = fibre(0.3, 0.3, 1.55, &[0.0, 0.0, 0.8]);
+    let band = SpongeBand { strength: 0.9, peak_nm: 450.0, width_nm: 40.0 };
+    let barb = SpongyBarb::new(cylinder, &[450.0, 520.0, 450.0], band).unwrap();
+    for theta_o in [0.0, 0.8] {
+        for channel in 0..3 {
+            let found = sphere_integral(|theta, phi| {
+                let mut values = [0.0; 3];
+                barb.far_field(&FibreAngles::new(theta, theta_o, phi), &mut values);
+                values[channel]
+            });
+            let sigma_a = if channel == 2 { 0.8 } else { 0.0 };
+            let expected = mean_attenuation(1.55, sigma_a, theta_o.sin()).total();
+            assert!((found - expected).abs() < 1e-6, "channel {channel}, viewer at {theta_o}: {found}, not {expected}");
+        }
+    }
+    let share = |strength: f64, width_nm: f64| {
+        SpongyBarb::new(fibre(0.3, 0.3, 1.55, &[0.0]), &[450.0], SpongeBand { strength, peak_nm: 450.0, width_nm })
+    };
+    assert!(
+        share(1.1, 40.0).unwrap_err().to_string().starts_with("the strength of a spongy barb must be between 0 and 1")
+    );
+    assert!(share(0.5, 0.0).unwrap_err().to_string().starts_with("the band of a spongy barb needs"));
+    assert!(share(0.0, 40.0).is_ok());
 }

@@ -1,2 +1,3 @@
 mod cylinder;
 mod optics;
+mod pigment;

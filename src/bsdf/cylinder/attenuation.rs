@@ -31,7 +31,9 @@ impl Attenuation {
         let pass = (-2.0 * sigma_a * cos_gamma_t / refraction.cos_theta_t).exp();
         let once = (1.0 - f) * (1.0 - f) * pass;
         let twice = once * f * pass;
-        Self { direct: [f, once, twice], later: twice * f * pass / (1.0 - f * pass) }
+        // Where nothing enters, at grazing incidence, nothing is left for later: not 0/0.
+        let later = if twice > 0.0 { twice * f * pass / ((1.0 - f) + f * (1.0 - pass)) } else { 0.0 };
+        Self { direct: [f, once, twice], later }
     }
 
     /// Mean over the width of the fibre, ½ ∫ dh, with an error below 1e-12 for η ≥ 1.05.

@@ -101,8 +101,8 @@ pub(super) struct FarField<'a, D> {
     pub(super) refraction: Refraction,
     /// φ_i − φ_o, any real number.
     pub(super) phi: f64,
-    /// M_p for R, TT, and TRT with all that follow.
-    pub(super) longitudinal: [f64; 3],
+    /// M_p for R, TT, TRT, and for all that follow.
+    pub(super) longitudinal: [f64; 4],
     /// Absorption in each channel, 1/radius.
     pub(super) sigma_a: &'a [f64],
     pub(super) values: &'a mut [f64],
@@ -113,9 +113,13 @@ impl<D: Density> pulp::NullaryFnOnce for FarField<'_, D> {
 
     #[inline(always)]
     fn call(self) {
-        let later = LaterPaths::new(&self.refraction, &WIDTH_RULE);
-        for (value, &sigma_a) in self.values.iter_mut().zip(self.sigma_a) {
-            *value = 0.5 * FRAC_1_PI * self.longitudinal[2] * later.sum(sigma_a);
+        let [m_reflected, m_once, m_twice, m_later] = self.longitudinal;
+        self.values.fill(0.0);
+        if m_later > 0.0 {
+            let later = LaterPaths::new(&self.refraction, &WIDTH_RULE);
+            for (value, &sigma_a) in self.values.iter_mut().zip(self.sigma_a) {
+                *value = 0.5 * FRAC_1_PI * m_later * later.sum(sigma_a);
+            }
         }
 
         let phi = (self.phi - (self.phi / (2.0 * PI)).round() * (2.0 * PI)).abs();
@@ -134,7 +138,7 @@ impl<D: Density> pulp::NullaryFnOnce for FarField<'_, D> {
                     continue;
                 }
                 let panel = Panel::new(&self.refraction, rule, middle, 0.5 * length);
-                let lobes = Lobes::new(&panel, self.density, phi, self.longitudinal, active);
+                let lobes = Lobes::new(&panel, self.density, phi, [m_reflected, m_once, m_twice], active);
                 for (value, &sigma_a) in self.values.iter_mut().zip(self.sigma_a) {
                     *value += lobes.reflected + lobes.transmitted(sigma_a, &panel.path[..panel.blocks]);
                 }
@@ -265,6 +269,7 @@ impl Lobes {
 /// Paths that are reflected inside twice or more, node by node over the width: each adds T³ entered / (1 − f T).
 struct LaterPaths {
     entered: [Block; WIDTH_BLOCKS],
+    transmittance: [Block; WIDTH_BLOCKS],
     reflectance: [Block; WIDTH_BLOCKS],
     path: [Block; WIDTH_BLOCKS],
 }
@@ -273,12 +278,13 @@ impl LaterPaths {
     #[inline(always)]
     fn new(refraction: &Refraction, rule: &WidthRule) -> Self {
         let nothing = [NOTHING; WIDTH_BLOCKS];
-        let mut later = Self { entered: nothing, reflectance: nothing, path: nothing };
+        let mut later = Self { entered: nothing, transmittance: nothing, reflectance: nothing, path: nothing };
         for block in 0..WIDTH_BLOCKS {
             for lane in 0..LANES {
                 let entry = refraction.enter(rule.sin_gamma[block][lane], rule.cos_gamma[block][lane]);
                 let entered_and_back = entry.transmittance * entry.reflectance;
                 later.entered[block][lane] = rule.weights[block][lane] * entered_and_back * entered_and_back;
+                later.transmittance[block][lane] = entry.transmittance;
                 later.reflectance[block][lane] = entry.reflectance;
                 later.path[block][lane] = entry.path;
             }
@@ -293,8 +299,10 @@ impl LaterPaths {
         for block in 0..WIDTH_BLOCKS {
             for lane in 0..LANES {
                 let pass = exp_of_negative(-sigma_a * self.path[block][lane]);
-                left[lane] +=
-                    self.entered[block][lane] * pass * pass * pass / (1.0 - self.reflectance[block][lane] * pass);
+                // 1 − f T without cancellation. It is 0 for a viewer along the fibre, where nothing enters: the smallest
+                // number, far below the rounding of any other case, makes 0/0 a 0.
+                let lost = self.transmittance[block][lane] + self.reflectance[block][lane] * (1.0 - pass);
+                left[lane] += self.entered[block][lane] * pass * pass * pass / (lost + f64::MIN_POSITIVE);
             }
         }
         sum(left)

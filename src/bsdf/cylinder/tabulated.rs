@@ -3,7 +3,9 @@
 //! N_p depends on the azimuth φ and on the viewer's inclination alone, for fixed parameters. It is stored over a grid in
 //! cosθo and φ, both evenly spaced, and interpolated by cubic polynomials through four points in either direction. The lobes M_p
 //! are evaluated as they are. All that enters the fibre falls as cos²θo towards the grazing end, so the table holds N_p/cos²θo
-//! for p ≥ 1, which is smooth and nowhere small. φ needs to run over half a turn only, since the lobes are even.
+//! for TT and TRT, which is smooth and nowhere small. φ needs to run over half a turn only, since the lobes are even. All later
+//! paths hang on the inclination alone, and without absorption as its cosine: they have a list of their own, evenly
+//! spaced in √cosθo.
 //!
 //! The error is not assumed but measured when a table is built: half-way between its points, where it is largest, in one
 //! direction and then in the other, everywhere. The grid is refined until the sum is small enough.
@@ -27,8 +29,13 @@ pub struct TabulatedCylinder {
     channel_count: usize,
     grid: Grid,
     entries: Vec<Entry>,
+    /// N_3+ over √cosθo, from 0 to 1, all channels of a point together.
+    later: Vec<f32>,
     error: f64,
 }
+
+/// Intervals of the list of later paths: enough for 1e-5 of its largest value at any absorption.
+const LATER_INTERVALS: usize = 1024;
 
 /// The number of intervals in both directions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,22 +46,18 @@ struct Grid {
     azimuths: usize,
 }
 
-/// More intervals than any roughness from 0.02 needs; refinement stops here.
-const MOST_INTERVALS: usize = 1 << 14;
+/// More intervals than a roughness of 0.05 needs; refinement stops here.
+const MOST_INTERVALS: usize = 1 << 12;
 
 impl Cylinder {
     /// Tabulates the azimuthal lobes so that each differs from the exact one by at most a third of `tolerance` of its
-    /// largest value over azimuths, hence the far field by at most `tolerance` of its own.
+    /// largest value over azimuths, hence the far field by at most `tolerance` of its own. (Later paths: 1e-5 of their largest
+    /// value over inclinations.)
     ///
-    /// What was reached is told by [`TabulatedCylinder::error`]; it exceeds `tolerance` only if that is below 1e-6, the
-    /// resolution of the stored numbers.
+    /// What was reached is told by [`TabulatedCylinder::error`]: refinement stops at 4096 intervals in either direction, and
+    /// a tolerance below 1e-6, the resolution of the stored numbers, is not pursued.
     pub fn tabulate(&self, tolerance: f64) -> TabulatedCylinder {
-        use super::azimuthal::Density;
-        let lobe_width = match self.lobe {
-            super::Lobe::Logistic(density) => density.analytic_height(),
-            super::Lobe::Narrow(density) => density.analytic_height(),
-            super::Lobe::Gaussian(density) => density.analytic_height(),
-        };
+        let lobe_width = self.lobe.analytic_height();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive whole number")]
         let azimuths = (16.0 * std::f64::consts::PI / lobe_width).ceil() as usize;
         let mut grid = Grid { inclinations: 24, azimuths: azimuths.max(32) };
@@ -75,8 +78,7 @@ impl Cylinder {
         }
     }
 
-    /// N_0, N_1/cos²θo and N_2/cos²θo of one viewer and azimuth, each with one value a channel; the third includes all
-    /// later paths.
+    /// N_0, N_1/cos²θo and N_2/cos²θo of one viewer and azimuth, each with one value a channel.
     fn azimuthal_lobes(&self, cos_theta_o: f64, phi: f64) -> [Vec<f64>; 3] {
         // At the grazing end the quotients are taken just beside it: they change by 4e-7 of themselves from there.
         let cos_theta_o = cos_theta_o.max(1e-7);
@@ -88,11 +90,24 @@ impl Cylinder {
             phi,
         };
         let quotient = 1.0 / (cos_theta_o * cos_theta_o);
-        [[1.0, 0.0, 0.0], [0.0, quotient, 0.0], [0.0, 0.0, quotient]].map(|longitudinal| {
+        [[1.0, 0.0, 0.0, 0.0], [0.0, quotient, 0.0, 0.0], [0.0, 0.0, quotient, 0.0]].map(|longitudinal| {
             let mut values = vec![0.0; self.channel_count()];
             self.sum_lobes(&angles, longitudinal, &mut values);
             values
         })
+    }
+}
+
+impl Cylinder {
+    /// N_3+ of each channel for a viewer at this √cosθo.
+    #[expect(clippy::cast_possible_truncation, reason = "the table holds f32")]
+    fn later_lobe(&self, root_cos_theta_o: f64) -> Vec<f32> {
+        let cos_theta_o = root_cos_theta_o * root_cos_theta_o;
+        let sin_theta_o = (1.0 - cos_theta_o * cos_theta_o).max(0.0).sqrt();
+        let angles = FibreAngles { sin_theta_i: 0.0, cos_theta_i: 1.0, sin_theta_o, cos_theta_o, phi: 0.0 };
+        let mut values = vec![0.0; self.channel_count()];
+        self.sum_lobes(&angles, [0.0, 0.0, 0.0, 1.0], &mut values);
+        values.into_iter().map(|value| value as f32).collect()
     }
 }
 
@@ -129,7 +144,9 @@ impl TabulatedCylinder {
             .collect();
         let entries: Vec<Entry> = rows.concat();
         debug_assert_eq!(entries.len(), (grid.inclinations + 1) * grid.columns() * blocks);
-        Self { longitudinal: cylinder.longitudinal.clone(), channel_count, grid, entries, error: f64::NAN }
+        let later =
+            (0..=LATER_INTERVALS).flat_map(|k| cylinder.later_lobe(k as f64 / LATER_INTERVALS as f64)).collect();
+        Self { longitudinal: cylinder.longitudinal.clone(), channel_count, grid, entries, later, error: f64::NAN }
     }
 
     /// Largest error half-way between rows and half-way between columns, in units of a lobe's largest value over azimuths.
@@ -194,6 +211,22 @@ impl TabulatedCylinder {
         let [reflected, once, twice] = self.longitudinal.evaluate(angles);
         let entered = angles.cos_theta_o * angles.cos_theta_o;
         self.interpolate(angles.cos_theta_o, angles.phi, [reflected, entered * once, entered * twice], values);
+        self.add_later(angles.cos_theta_o, twice, values);
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a grid number is small and positive; the list holds f32"
+    )]
+    fn add_later(&self, cos_theta_o: f64, longitudinal: f64, values: &mut [f64]) {
+        let position = cos_theta_o.clamp(0.0, 1.0).sqrt() * LATER_INTERVALS as f64;
+        let before = (position as usize).min(LATER_INTERVALS - 1);
+        let share = position - before as f64;
+        let (low, high) = self.later[before * values.len()..][..2 * values.len()].split_at(values.len());
+        for (value, (&low, &high)) in values.iter_mut().zip(low.iter().zip(high)) {
+            *value += longitudinal * (f64::from(low) * (1.0 - share) + f64::from(high) * share);
+        }
     }
 
     #[expect(
