@@ -1,8 +1,8 @@
 //! Spongy barb: a cylinder whose inside scatters a band of colour, the blue of feathers that are not iridescent.
 //!
-//! **Model.** S = S_0 + (1 − b) Σ_{p≥1} S_p + b Ā(θo) (1 + cosφ)/4π, b = strength · exp(−(λ − λ0)²/2w²). Of the light that has entered
+//! **Model.** S = S₀ + (1 − b) Σ_{p≥1} Sₚ + b Ā(θo) (1 + cosφ)/4π, b = strength · exp(−(λ − λ0)²/2w²). Of the light that has entered
 //! a [`Cylinder`] and would leave it, the share b is scattered by the spongy keratin instead, preferring the way back
-//! (φ = 0 is backwards). Ā(θo) = ½ ∫ Σ_{p≥1} A_p dh is what would have left, so the barb stays exactly as white as its cylinder:
+//! (φ = 0 is backwards). Ā(θo) = ½ ∫ Σ_{p≥1} Aₚ dh is what would have left, so the barb stays exactly as white as its cylinder:
 //! ∫ S dωi is the cylinder's albedo for any band. Pigment under and in the sponge acts through Ā.
 //!
 //! The form is this project's own, a phenomenological stand-in for coherent scattering by a quasi-ordered medium (Prum

@@ -29,8 +29,8 @@ pub enum InversionError {
     },
 }
 
-/// σ_a, 1/radius, of fibres that look `colour` in one channel of linear light, by the fit of Chiang et al. 2016 (eq. 9):
-/// (ln c / (5.969 − 0.215 β + 2.532 β² − 10.73 β³ + 5.574 β⁴ + 0.245 β⁵))², β = β_n.
+/// σₐ, 1/radius, of fibres that look `colour` in one channel of linear light, by the fit of Chiang et al. 2016 (eq. 9):
+/// (ln c / (5.969 − 0.215 β + 2.532 β² − 10.73 β³ + 5.574 β⁴ + 0.245 β⁵))², β = βₙ.
 ///
 /// The fit is for many scatterings in dense white-lit fur, where light has passed many fibres. For a single fibre, or a feather
 /// of few layers, it gives far too little absorption: there the albedo of the model itself is to be inverted.
@@ -59,7 +59,7 @@ pub fn chiang_absorption(colour: f64, beta_n: f64) -> Result<f64, InversionError
 /// If the value is above `at(0)`, or at or below the limit.
 pub fn solve_decreasing(at: impl Fn(f64) -> f64, at_infinity: f64, target: f64) -> Result<f64, InversionError> {
     let brightest = at(0.0);
-    if !(target <= brightest + 1e-12) {
+    if target.is_nan() || target > brightest + 1e-12 {
         return Err(InversionError::TooBright { target, brightest });
     }
     if target <= at_infinity {

@@ -1,7 +1,7 @@
 //! Absorbers, and the absorption behind a colour. Knows nothing of the bodies that hold them.
 //!
-//! A fibre's absorption is a sum over its absorbers, σ_a(λ) = Σ amount · spectrum(λ), in 1/radius of the fibre. A spectrum
-//! here is a pure shape, about 1 at its reference, so that an amount is the absorption there: σ_a per radius needs no
+//! A fibre's absorption is a sum over its absorbers, σₐ(λ) = Σ amount · spectrum(λ), in 1/radius of the fibre. A spectrum
+//! here is a pure shape, about 1 at its reference, so that an amount is the absorption there: σₐ per radius needs no
 //! knowledge of the radius, while a concentration does. To get 1/mm, divide by the radius in mm.
 //!
 //! [`AbsorptionSpectrum`] is one absorber: a power law (melanins), a sum of bands (carotenoids and others), a table.
@@ -21,7 +21,7 @@ pub const EUMELANIN_RGB: [f64; 3] = [0.419, 0.697, 1.37];
 /// The same for pheomelanin, the reddish one.
 pub const PHEOMELANIN_RGB: [f64; 3] = [0.187, 0.4, 1.05];
 
-/// σ_a in linear RGB, 1/radius, of these concentrations of [`EUMELANIN_RGB`] and [`PHEOMELANIN_RGB`].
+/// σₐ in linear RGB, 1/radius, of these concentrations of [`EUMELANIN_RGB`] and [`PHEOMELANIN_RGB`].
 ///
 /// # Errors
 /// If a concentration is negative or no number.

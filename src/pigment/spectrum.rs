@@ -84,7 +84,7 @@ pub struct AbsorptionTable {
 
 impl AbsorptionTable {
     /// From rows of wavelength in nm, ascending, and absorption. Negative values are kept: a measured
-    /// baseline scatters about 0, and where a model needs σ_a ≥ 0 it says so.
+    /// baseline scatters about 0, and where a model needs σₐ ≥ 0 it says so.
     ///
     /// # Errors
     /// If there are fewer than two rows, or one that is out of order or no number.

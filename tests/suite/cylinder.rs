@@ -153,7 +153,7 @@ fn far_field_by_brute_force(cylinder: &Cylinder, eta: f64, beta_n: f64, angles: 
     let mut here = vec![0.0; values.len()];
     for pair in breaks.windows(2) {
         let length = pair[1] - pair[0];
-        // The poles of the logistic are about 0.5 (β_n + …) away in γ: panels of 0.2 β_n see a smooth integrand.
+        // The poles of the logistic are about 0.5 (βₙ + …) away in γ: panels of 0.2 βₙ see a smooth integrand.
         let parts = (length / (0.2 * beta_n)).ceil().max(4.0);
         let half = 0.5 * length / parts;
         let mut middle = pair[0] + half;

@@ -1,7 +1,7 @@
 //! What survives each path through the fibre: the readable form, one position across the fibre at a time.
 //!
-//! A_0 = f, A_p = (1 − f)² f^{p−1} T^p; f = F(cosθo cosγ; η) is the unpolarised reflectance of the surface, met by the three-
-//! dimensional angle of incidence, and T = exp(−2 σ_a cosγt / cosθt) the transmittance of one pass, σ_a in 1/radius.
+//! A₀ = f, Aₚ = (1 − f)² f^{p−1} T^p; f = F(cosθo cosγ; η) is the unpolarised reflectance of the surface, met by the three-
+//! dimensional angle of incidence, and T = exp(−2 σₐ cosγt / cosθt) the transmittance of one pass, σₐ in 1/radius.
 
 use super::far_field::Refraction;
 use super::quadrature::WIDTH_RULE;
@@ -10,9 +10,9 @@ use crate::optics::fresnel;
 /// Shares of the light that leave by R, TT, TRT, and by all later paths together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Attenuation {
-    /// A_0, A_1, A_2.
+    /// A₀, A₁, A₂.
     pub direct: [f64; 3],
-    /// Σ_{p ≥ 3} A_p = A_2 f T / (1 − f T).
+    /// Σ_{p ≥ 3} Aₚ = A₂ f T / (1 − f T).
     pub later: f64,
 }
 

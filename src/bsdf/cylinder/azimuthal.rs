@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use crate::optics::elementary::exp_of_negative;
 
-/// The density D by which a lobe N_p is blurred around the circle.
+/// The density D by which a lobe Nₚ is blurred around the circle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AzimuthalLobe {
     /// Logistic density of scale s = √(π/8) (0.265 β + 1.194 β² + 5.372 β²²), cut off at ±π and normalised again (Chiang
@@ -56,7 +56,7 @@ pub(super) struct TrimmedLogistic {
 }
 
 impl TrimmedLogistic {
-    /// Of roughness β_n.
+    /// Of roughness βₙ.
     pub(super) fn new(beta_n: f64) -> Self {
         let scale = (PI / 8.0).sqrt() * (0.265 * beta_n + 1.194 * beta_n.powi(2) + 5.372 * beta_n.powi(22));
         Self { inverse_scale: 1.0 / scale, normalisation: 1.0 / (scale * (0.5 * PI / scale).tanh()) }
@@ -191,7 +191,7 @@ pub(super) struct WrappedGaussian {
 }
 
 impl WrappedGaussian {
-    /// Of standard deviation β_n.
+    /// Of standard deviation βₙ.
     pub(super) fn new(beta_n: f64) -> Self {
         Self { half_inverse_variance: 0.5 / (beta_n * beta_n), normalisation: 1.0 / (TAU.sqrt() * beta_n) }
     }

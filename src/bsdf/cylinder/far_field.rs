@@ -1,20 +1,20 @@
 //! Azimuthal lobes averaged over the fibre's width, and with them the far field.
 //!
-//! N_p(φ) = ½ ∫₋₁¹ A_p(h) D(φ − Φ_p(h)) dh, with h = sinγ. A_p is even in γ, and Φ_p − pπ = ψ_p = 2pγt − 2γ is odd, so that
+//! Nₚ(φ) = ½ ∫₋₁¹ Aₚ(h) D(φ − Φₚ(h)) dh, with h = sinγ. Aₚ is even in γ, and Φₚ − pπ = ψₚ = 2pγt − 2γ is odd, so that
 //!
-//! N_p = ½ ∫₀^{π/2} A_p [D(x_p − ψ_p) + D(x_p + ψ_p)] cosγ dγ, x_p = φ − pπ,
+//! Nₚ = ½ ∫₀^{π/2} Aₚ [D(xₚ − ψₚ) + D(xₚ + ψₚ)] cosγ dγ, xₚ = φ − pπ,
 //!
-//! and the costly A_p are computed on half of the width. In γ the integrand is analytic, up to the ends and through
-//! grazing exits, except where a D is opposite its peak: the trimmed logistic has a kink there, at x_p ∓ ψ_p = ±π.
+//! and the costly Aₚ are computed on half of the width. In γ the integrand is analytic, up to the ends and through
+//! grazing exits, except where a D is opposite its peak: the trimmed logistic has a kink there, at xₚ ∓ ψₚ = ±π.
 //!
 //! The quadrature is chosen for each pair of directions in two steps. [`kinks`] cuts the half-width where some lobe has
 //! its kink, unless the kink is too weak to matter. [`PanelLengths`] then gives every panel its Gauss–Legendre rule, from
-//! the two things that limit convergence: the poles of D, at height iπs in φ and therefore at least iπs/2 in γ (no ψ_p is
+//! the two things that limit convergence: the poles of D, at height iπs in φ and therefore at least iπs/2 in γ (no ψₚ is
 //! steeper than 2), and the branch point of cosγt, at sinγ = η', that is arcosh η' ≥ arcosh η above γ = π/2. All lobes share
-//! the nodes. The error is below 1e-6 of the larger of the value and 1e-6 of the peak over azimuths, for β_n from 0.05
+//! the nodes. The error is below 1e-6 of the larger of the value and 1e-6 of the peak over azimuths, for βₙ from 0.05
 //! to 1 and any angles; `tests/suite/cylinder.rs` measures it.
 //!
-//! N_3+ is uniform, hence one mean of A_3+ over the width; it has a pole of its own to mind, see [`WidthRule`].
+//! N₃₊ is uniform, hence one mean of A₃₊ over the width; it has a pole of its own to mind, see [`WidthRule`].
 //!
 //! The lanes of a vector register run over nodes. They could run over channels, but three of these fill no register.
 
@@ -58,7 +58,7 @@ impl Refraction {
         let sin_gamma_t = sin_gamma * self.inverse_eta_prime;
         let cos_gamma_t = (1.0 - sin_gamma_t * sin_gamma_t).sqrt();
 
-        // Fresnel: with r_s = a/b and r_p = c/d, f = (r_s² + r_p²)/2, and 1 − r² = 4 η cosines / b² or d².
+        // Fresnel: with rₛ = a/b and rₚ = c/d, f = (rₛ² + rₚ²)/2, and 1 − r² = 4 η cosines / b² or d².
         let cosine = self.cos_theta_o * cos_gamma;
         let cosine_inside = self.cos_theta_t * cos_gamma_t;
         let (a, b) = (cosine - eta * cosine_inside, cosine + eta * cosine_inside);
@@ -73,7 +73,7 @@ impl Refraction {
         }
     }
 
-    /// ψ_p at an angle γ and its derivative.
+    /// ψₚ at an angle γ and its derivative.
     fn turn(&self, p: f64, gamma: f64) -> (f64, f64) {
         let (sin_gamma, cos_gamma) = gamma.sin_cos();
         let sin_gamma_t = sin_gamma * self.inverse_eta_prime;
@@ -94,14 +94,14 @@ struct Entry {
     transmittance: f64,
 }
 
-/// The far field of one group of channels that share their index: writes Σ_p M_p N_p to `values`, one a channel.
+/// The far field of one group of channels that share their index: writes Σₚ Mₚ Nₚ to `values`, one a channel.
 pub(super) struct FarField<'a, D> {
     pub(super) density: D,
     pub(super) panel_lengths: &'a PanelLengths,
     pub(super) refraction: Refraction,
-    /// φ_i − φ_o, any real number.
+    /// φ of the light minus that of the viewer, any real number.
     pub(super) phi: f64,
-    /// M_p for R, TT, TRT, and for all that follow.
+    /// Mₚ for R, TT, TRT, and for all that follow.
     pub(super) longitudinal: [f64; 4],
     /// Absorption in each channel, 1/radius.
     pub(super) sigma_a: &'a [f64],
@@ -147,7 +147,7 @@ impl<D: Density> pulp::NullaryFnOnce for FarField<'_, D> {
     }
 }
 
-/// Which of R, TT and TRT a panel around `middle` adds anything to. No ψ_p is steeper than 2.
+/// Which of R, TT and TRT a panel around `middle` adds anything to. No ψₚ is steeper than 2.
 fn active_lobes<D: Density>(refraction: &Refraction, density: D, phi: f64, middle: f64, length: f64) -> [bool; 3] {
     let reach = density.reach() + length;
     std::array::from_fn(|p| {
@@ -225,9 +225,9 @@ impl Lobes {
         if active[0] {
             let mut reflected = NOTHING;
             for block in 0..blocks {
-                for lane in 0..LANES {
+                for (lane, reflected) in reflected.iter_mut().enumerate() {
                     let share = panel.weight[block][lane] * panel.reflectance[block][lane];
-                    reflected[lane] += share * near.at(panel.turn[block][lane]);
+                    *reflected += share * near.at(panel.turn[block][lane]);
                 }
             }
             lobes.reflected = m_reflected * sum(reflected);
@@ -292,17 +292,17 @@ impl LaterPaths {
         later
     }
 
-    /// Mean of A_3+ at this absorption.
+    /// Mean of A₃₊ at this absorption.
     #[inline(always)]
     fn sum(&self, sigma_a: f64) -> f64 {
         let mut left = NOTHING;
         for block in 0..WIDTH_BLOCKS {
-            for lane in 0..LANES {
+            for (lane, left) in left.iter_mut().enumerate() {
                 let pass = exp_of_negative(-sigma_a * self.path[block][lane]);
                 // 1 − f T without cancellation. It is 0 for a viewer along the fibre, where nothing enters: the smallest
                 // number, far below the rounding of any other case, makes 0/0 a 0.
                 let lost = self.transmittance[block][lane] + self.reflectance[block][lane] * (1.0 - pass);
-                left[lane] += self.entered[block][lane] * pass * pass * pass / (lost + f64::MIN_POSITIVE);
+                *left += self.entered[block][lane] * pass * pass * pass / (lost + f64::MIN_POSITIVE);
             }
         }
         sum(left)

@@ -1,4 +1,4 @@
-//! How a fibre spreads light along its axis: the lobe M_p of d'Eon et al. 2011 (eq. 7).
+//! How a fibre spreads light along its axis: the lobe Mₚ of d'Eon et al. 2011 (eq. 7).
 //!
 //! M(θi, θo) = csch(1/v)/(2v) · exp(−sinθi sinθo / v) · I₀(cosθi cosθo / v), with ∫ M cosθo dθo = 1.
 //!
@@ -11,7 +11,7 @@
 
 use super::FibreAngles;
 
-/// How a roughness β_m becomes the variance v of the lobe R.
+/// How a roughness βₘ becomes the variance v of the lobe R.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LongitudinalMapping {
     /// v = (0.726 β + 0.812 β² + 3.7 β²⁰)², β between 0 and 1 (Chiang et al. 2016, eq. 7), chosen by its authors so
@@ -34,7 +34,7 @@ impl LongitudinalMapping {
     }
 }
 
-/// The lobes M_p for R, TT, and TRT with all that follow it.
+/// The lobes Mₚ for R, TT, and TRT with all that follow it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Longitudinal {
     inverse_variances: [f64; 3],
@@ -51,7 +51,7 @@ impl Longitudinal {
         }
     }
 
-    /// M_p for p = 0, 1, 2.
+    /// Mₚ for p = 0, 1, 2.
     #[inline]
     pub(super) fn evaluate(&self, angles: &FibreAngles) -> [f64; 3] {
         let sine_sum = angles.sin_theta_i + angles.sin_theta_o;

@@ -1,10 +1,10 @@
 //! Dielectric cylinder: a barb, a barbule or a hair, as a rough, clear or absorbing circular fibre.
 //!
-//! **Model.** S = Σ_p M_p N_p (d'Eon et al. 2011, *An energy-conserving hair reflectance model*; Chiang et al. 2016, *A
+//! **Model.** S = Σₚ Mₚ Nₚ (d'Eon et al. 2011, *An energy-conserving hair reflectance model*; Chiang et al. 2016, *A
 //! practical and controllable hair and fur model for production path tracing*; the exact form of the formulas as in Pharr 2016,
 //! *The implementation of a hair scattering model*). Light that is reflected (R, p = 0), passes through (TT, 1) or
 //! is reflected once inside (TRT, 2) has a lobe of its own; everything later shares one that is uniform around the
-//! fibre. M_p spreads along the fibre, see [`LongitudinalMapping`]; N_p spreads around it, see [`AzimuthalLobe`].
+//! fibre. Mₚ spreads along the fibre, see [`LongitudinalMapping`]; Nₚ spreads around it, see [`AzimuthalLobe`].
 //! S is energy per light and solid angle: ∫ S dωi at a fixed viewer is the [`Attenuation::total`], 1 without absorption.
 //! As a [`Bsdf`] the fibre is f = S/|n·ωi|, so that f times the cosine integrates to the same.
 //!
@@ -18,9 +18,9 @@
 //! **What it leaves out.** Scales tilted against the axis, a medulla or pores ([`crate::bsdf::spongy_barb`] has them),
 //! elliptical and conical sections, coherence between paths, polarisation.
 //!
-//! **It is not reciprocal.** A_p and the refraction hang on one direction alone. Here it is the viewer's. A white fibre sends
-//! exactly all light on its way for each viewer; ∫ S dωo for a fixed light runs, for η 1.55 and β_m 0.1 to 0.6, from 1.05
-//! (β_m 0.6, light across the fibre) to 0.72 (β_m 0.3, light at 87° of inclination).
+//! **It is not reciprocal.** Aₚ and the refraction hang on one direction alone. Here it is the viewer's. A white fibre sends
+//! exactly all light on its way for each viewer; ∫ S dωo for a fixed light runs, for η 1.55 and βₘ 0.1 to 0.6, from 1.05
+//! (βₘ 0.6, light across the fibre) to 0.72 (βₘ 0.3, light at 87° of inclination).
 
 mod attenuation;
 mod azimuthal;
@@ -236,7 +236,7 @@ impl Cylinder {
 
     /// Far-field scattering function S, 1/sr, one value a channel: the mean over the fibre's width.
     ///
-    /// Error below 1e-6 of the larger of S and 1e-6 of its peak over azimuths, for β_n from 0.05 to 1.
+    /// Error below 1e-6 of the larger of S and 1e-6 of its peak over azimuths, for βₙ from 0.05 to 1.
     ///
     /// # Panics
     /// If `values` is not one number a channel.
@@ -246,7 +246,7 @@ impl Cylinder {
         self.sum_lobes(angles, [reflected, once, twice, twice], values);
     }
 
-    /// Σ M_p N_p for given M_p, the fourth for all paths after TRT.
+    /// Σ Mₚ Nₚ for given Mₚ, the fourth for all paths after TRT.
     fn sum_lobes(&self, angles: &FibreAngles, longitudinal: [f64; 4], values: &mut [f64]) {
         let mut rest = values;
         for group in &self.groups {
@@ -256,7 +256,7 @@ impl Cylinder {
         }
     }
 
-    /// Σ M_p N_p for fibres of one index.
+    /// Σ Mₚ Nₚ for fibres of one index.
     fn sum_group(
         &self,
         group: &Group,
@@ -281,8 +281,8 @@ impl Cylinder {
         }
     }
 
-    /// For each channel, what the surface reflects in these directions, M_0 N_0, and what leaves the fibre otherwise, ½ ∫ Σ_{p≥1}
-    /// A_p dh.
+    /// For each channel, what the surface reflects in these directions, M₀ N₀, and what leaves the fibre otherwise, ½ ∫ Σ_{p≥1}
+    /// Aₚ dh.
     pub(super) fn outside_and_inside(&self, angles: &FibreAngles, mut each: impl FnMut(usize, f64, f64)) {
         let [reflected, ..] = self.longitudinal.evaluate(angles);
         let mut channel = 0;

@@ -1,4 +1,4 @@
-//! The fibre seen so closely that the position across it is known: S(h) = Σ_p M_p A_p(h) D(φ − Φ_p(h)).
+//! The fibre seen so closely that the position across it is known: S(h) = Σₚ Mₚ Aₚ(h) D(φ − Φₚ(h)).
 
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 

@@ -1,8 +1,8 @@
 //! The far field from tables of its azimuthal lobes, for pictures: many directions, one set of parameters.
 //!
-//! N_p depends on the azimuth φ and on the viewer's inclination alone, for fixed parameters. It is stored over a grid in
-//! cosθo and φ, both evenly spaced, and interpolated by cubic polynomials through four points in either direction. The lobes M_p
-//! are evaluated as they are. All that enters the fibre falls as cos²θo towards the grazing end, so the table holds N_p/cos²θo
+//! Nₚ depends on the azimuth φ and on the viewer's inclination alone, for fixed parameters. It is stored over a grid in
+//! cosθo and φ, both evenly spaced, and interpolated by cubic polynomials through four points in either direction. The lobes Mₚ
+//! are evaluated as they are. All that enters the fibre falls as cos²θo towards the grazing end, so the table holds Nₚ/cos²θo
 //! for TT and TRT, which is smooth and nowhere small. φ needs to run over half a turn only, since the lobes are even. All later
 //! paths hang on the inclination alone, and without absorption as its cosine: they have a list of their own, evenly
 //! spaced in √cosθo.
@@ -29,7 +29,7 @@ pub struct TabulatedCylinder {
     channel_count: usize,
     grid: Grid,
     entries: Vec<Entry>,
-    /// N_3+ over √cosθo, from 0 to 1, all channels of a point together.
+    /// N₃₊ over √cosθo, from 0 to 1, all channels of a point together.
     later: Vec<f32>,
     error: f64,
 }
@@ -78,7 +78,7 @@ impl Cylinder {
         }
     }
 
-    /// N_0, N_1/cos²θo and N_2/cos²θo of one viewer and azimuth, each with one value a channel.
+    /// N₀, N₁/cos²θo and N₂/cos²θo of one viewer and azimuth, each with one value a channel.
     fn azimuthal_lobes(&self, cos_theta_o: f64, phi: f64) -> [Vec<f64>; 3] {
         // At the grazing end the quotients are taken just beside it: they change by 4e-7 of themselves from there.
         let cos_theta_o = cos_theta_o.max(1e-7);
@@ -99,7 +99,7 @@ impl Cylinder {
 }
 
 impl Cylinder {
-    /// N_3+ of each channel for a viewer at this √cosθo.
+    /// N₃₊ of each channel for a viewer at this √cosθo.
     #[expect(clippy::cast_possible_truncation, reason = "the table holds f32")]
     fn later_lobe(&self, root_cos_theta_o: f64) -> Vec<f32> {
         let cos_theta_o = root_cos_theta_o * root_cos_theta_o;
