@@ -60,12 +60,12 @@ fn far_field(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("cylinder far field");
     group.throughput(Throughput::Elements(PAIRS as u64)).sample_size(10);
     for beta_n in [0.05, 0.1, 0.3, 0.6, 0.9] {
-        let cylinder = Cylinder::new(&parameters(beta_n)).unwrap();
+        let cylinder = Cylinder::new(&parameters(beta_n)).expect("these parameters are in range");
         group.bench_function(format!("fresh, beta_n {beta_n}"), |bencher| {
             bencher.iter(|| total(black_box(&pairs), |angles, values| cylinder.far_field(angles, values)));
         });
     }
-    let table = Cylinder::new(&parameters(0.3)).unwrap().tabulate(1e-4);
+    let table = Cylinder::new(&parameters(0.3)).expect("these parameters are in range").tabulate(1e-4);
     println!("table: {} bytes, error {:.1e}", table.bytes(), table.error());
     group.bench_function("tabulated, beta_n 0.3", |bencher| {
         bencher.iter(|| total(black_box(&pairs), |angles, values| table.far_field(angles, values)));
@@ -75,7 +75,7 @@ fn far_field(criterion: &mut Criterion) {
 
 /// Time to build the table of the benchmark above, all cores.
 fn tabulation(criterion: &mut Criterion) {
-    let cylinder = Cylinder::new(&parameters(0.3)).unwrap();
+    let cylinder = Cylinder::new(&parameters(0.3)).expect("these parameters are in range");
     criterion.bench_function("cylinder, build table, beta_n 0.3", |bencher| {
         bencher.iter(|| black_box(&cylinder).tabulate(1e-4).error());
     });

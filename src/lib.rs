@@ -7,6 +7,8 @@ pub mod bsdf;
 pub mod fit;
 pub mod job;
 pub mod measure;
+mod number;
 pub mod optics;
 pub mod parameter;
 pub mod pigment;
+pub mod report;

@@ -1,3 +1,9 @@
 //! The command line: it only dispatches.
 
-fn main() {}
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::main()
+}

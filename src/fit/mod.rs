@@ -1,12 +1,37 @@
 //! The fit engine: parameters, residuals, solvers, starts, uncertainty. It knows nothing of feathers.
 
 mod assignment;
+mod control;
+mod curvature;
+mod differences;
+mod engine;
+mod error;
+mod expression;
+mod least_squares;
+mod linear;
+mod local;
+mod loss;
+mod mapping;
+mod minima;
+mod objective;
 mod outcome;
 mod residuals;
+mod search;
+mod smooth;
+mod starts;
+mod statistics;
+mod step;
+mod summary;
+mod warnings;
 
 pub use assignment::{Assignment, Prior, Role};
+pub use control::Control;
+pub use engine::fit;
+pub use error::FitError;
+pub use expression::{ExpressionError, parse_tie};
 pub use outcome::{
     Bound, Estimate, Fit, Goodness, Loss, Minimum, OpenDirection, ProfilePoint, Settings, SigmaSource, Solver,
     StopReason, TracePoint,
 };
 pub use residuals::Residuals;
+pub use warnings::misfit;

@@ -215,7 +215,8 @@ pub struct Fit {
     pub minima: Vec<Minimum>,
     /// Names of the parameters of `covariance`, the free ones.
     pub free: Vec<String>,
-    /// Covariance of the free parameters at the best minimum; rows of parameters at a bound or left open are None.
+    /// Covariance of the free parameters at the best minimum; rows of parameters on a bound, or in a
+    /// combination that the readings do not determine at all, are None.
     pub covariance: Vec<Vec<Option<f64>>>,
     /// Correlations, likewise.
     pub correlations: Vec<Vec<Option<f64>>>,

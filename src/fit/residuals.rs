@@ -29,7 +29,7 @@ pub trait Residuals: Sync {
 
     /// The same comparison on fewer readings, with the same parameters and about the same minima: what starts are
     /// screened with. None where there is nothing to save.
-    fn coarse(&self) -> Option<Box<dyn Residuals + '_>> {
+    fn coarse(&self) -> Option<&dyn Residuals> {
         None
     }
 

@@ -1,9 +1,37 @@
 //! Where a measurement, a model and the engine meet: a job as it is typed, as it is meant, and what came out of it.
 
+mod answer;
+mod case;
+mod catalogue;
+mod describe;
+mod draft;
+mod error;
+mod file;
+mod film_peaks;
+mod load;
+mod model_note;
 mod outcome;
+mod peaks;
+mod predict;
+mod run;
+mod schema;
+mod simulate;
+mod spectra;
+mod support;
+mod synthetic;
 
+pub use case::CheckedCase;
+pub use catalogue::{ModelEntry, models};
+pub use describe::describe;
+pub use draft::draft;
+pub use error::JobError;
+pub use file::{AlternativeFile, DataFile, FreeFile, JobFile, ModelFile, ParameterFile, PriorFile, SyntheticFile};
+pub use load::Job;
 pub use outcome::{
     Case, CaseData, InputFile, ModelNote, Outcome, PeakFit, Prediction, SpectrumFit, Support, ThicknessOrder, Truth,
 };
+pub use run::run;
+pub use schema::schemas;
+pub use simulate::{Noise, simulate};
 
 pub use crate::optics::{MaterialNote, Reference};

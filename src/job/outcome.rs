@@ -180,9 +180,9 @@ pub struct Support {
     pub same_order: bool,
     /// The verdict: gain > 2 standard errors and same order.
     pub supported: bool,
-    /// AICc with the film minus without, on the effective number of readings; negative favours the film.
+    /// `AICc` with the film minus without, on the effective number of readings; negative favours the film.
     pub delta_aicc: Option<f64>,
-    /// Number of readings and the effective number behind that AICc.
+    /// Number of readings and the effective number behind that `AICc`.
     pub effective_readings: f64,
     /// The verdict in a sentence.
     pub text: String,

@@ -22,6 +22,12 @@ pub trait PeakModel: Send + Sync + Debug {
     /// All maxima between `shortest_nm` and `longest_nm` at these angles, by rising order. Orders are counted from
     /// infinite wavelength, whether or not a maximum lies in the window, so that an order means the same at every angle.
     fn peaks(&self, values: &[f64], geometry: &Geometry, shortest_nm: f64, longest_nm: f64) -> Vec<Peak>;
+
+    /// Order of interference m of a peak, in waves of path difference: a half more or less than a whole number where
+    /// one of two reflections turns the phase. The peak's own order where the model is not a single film.
+    fn interference_order(&self, peak_order: u32) -> f64 {
+        f64::from(peak_order)
+    }
 }
 
 /// Cosine of the angle between light and half-vector: what a flat film tilted to mirror from one to the other sees.

@@ -1,5 +1,7 @@
 //! What was measured, after it has been read and checked: spectra at given angles, or peak wavelengths at given angles.
 
+use std::f64::consts::PI;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +17,17 @@ pub enum Quantity {
     BsdfCos,
     /// Ratio to a white Lambertian standard in the same instrument: 1 = as bright as the standard.
     Reflectance,
+}
+
+impl Quantity {
+    /// The reading as a ratio to a white Lambertian standard, whose BRDF is 1/π in all directions.
+    pub fn reflectance_factor(self, reading: f64, geometry: &Geometry) -> f64 {
+        match self {
+            Self::Brdf => PI * reading,
+            Self::BsdfCos => PI * reading / geometry.theta_o_deg.to_radians().cos(),
+            Self::Reflectance => reading,
+        }
+    }
 }
 
 /// One geometry's readings over wavelength. Wavelengths rise strictly, every number is finite, every σ positive.
@@ -61,4 +74,13 @@ pub struct PeakReading {
 pub struct PeakTable {
     /// In the order of the file.
     pub readings: Vec<PeakReading>,
+}
+
+/// A checked table of either kind.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Table {
+    /// Readings over wavelength.
+    Spectra(GonioTable),
+    /// Peak wavelengths.
+    Peaks(PeakTable),
 }

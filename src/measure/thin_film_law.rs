@@ -62,14 +62,6 @@ impl ThinFilmLaw {
         };
         Self { design, parameters: vec![thickness, index] }
     }
-
-    /// The order of interference m, or m − ½, that belongs to the peak of this order.
-    pub fn interference_order(&self, peak_order: u32) -> f64 {
-        match self.design.phase_jumps {
-            PhaseJumps::Both => f64::from(peak_order),
-            PhaseJumps::One => f64::from(peak_order) - 0.5,
-        }
-    }
 }
 
 impl PeakModel for ThinFilmLaw {
@@ -87,6 +79,13 @@ impl PeakModel for ThinFilmLaw {
             .skip_while(|peak| peak.wavelength_nm > longest_nm)
             .take_while(|peak| peak.wavelength_nm >= shortest_nm)
             .collect()
+    }
+
+    fn interference_order(&self, peak_order: u32) -> f64 {
+        match self.design.phase_jumps {
+            PhaseJumps::Both => f64::from(peak_order),
+            PhaseJumps::One => f64::from(peak_order) - 0.5,
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::stack::{Interface, Layer, Wave, response};
+use super::stack::{Interface, Layer, Wave};
 use super::{Amplitudes, Response};
 
 /// Response of a film on a substrate, light coming from a clear medium of index `front`.
@@ -12,10 +12,11 @@ use super::{Amplitudes, Response};
 /// Exact for any order of the indices, absorbing films and total reflection.
 pub fn airy(front: f64, film: Layer, substrate: Complex64, cos_theta: f64, wavelength_nm: f64) -> Response {
     let wave = Wave::new(front, cos_theta, wavelength_nm);
-    let upper = wave.interface(Complex64::from(front), film.index);
-    let lower = wave.interface(film.index, substrate);
-    let pass = wave.pass(film);
-    response(&wave, substrate, airy_sum(upper.s, lower.s, pass), airy_sum(upper.p, lower.p, pass))
+    let (middle, last) = (wave.medium(film.index), wave.medium(substrate));
+    let upper = wave.front.interface_to(middle);
+    let lower = middle.interface_to(last);
+    let pass = wave.pass(middle, film.thickness_nm);
+    wave.response(last, airy_sum(upper.s, lower.s, pass), airy_sum(upper.p, lower.p, pass))
 }
 
 /// The sum over all internal reflections, for one polarisation.

@@ -14,10 +14,11 @@ pub struct Permittivity {
 
 impl Permittivity {
     /// From n > 0 and k ≥ 0 in each channel.
-    pub fn new(index: impl Iterator<Item = (f64, f64)>) -> Self {
-        let (re, im): (Vec<f64>, Vec<f64>) = index.map(|(n, k)| (n * n - k * k, 2.0 * n * k)).unzip();
-        let least_re = re.iter().copied().fold(f64::INFINITY, f64::min);
-        let clear = im.iter().all(|&im| im <= 0.0);
+    pub fn new(n: impl Iterator<Item = f64> + Clone, k: impl Iterator<Item = f64> + Clone) -> Self {
+        let re: Vec<f64> = n.clone().zip(k.clone()).map(|(n, k)| n * n - k * k).collect();
+        let im: Vec<f64> = n.zip(k).map(|(n, k)| 2.0 * n * k).collect();
+        let least_re = fold_lanes(&re, f64::INFINITY, |least, re| if re < least { re } else { least });
+        let clear = fold_lanes(&im, 0.0, |greatest, im| if im > greatest { im } else { greatest }) <= 0.0;
         Self { re, im, least_re, clear }
     }
 
@@ -28,6 +29,17 @@ impl Permittivity {
     pub(super) fn im(&self) -> &[f64] {
         &self.im
     }
+}
+
+/// A fold whose steps do not wait for each other: eight at a time, and then those eight.
+fn fold_lanes(values: &[f64], start: f64, step: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut lanes = [start; 8];
+    for chunk in values.chunks(lanes.len()) {
+        for (lane, value) in lanes.iter_mut().zip(chunk) {
+            *lane = step(*lane, *value);
+        }
+    }
+    lanes.into_iter().fold(start, step)
 }
 
 /// Which layers follow each other, from the outside in, and of what material each is. Layers that occur several times
@@ -74,6 +86,11 @@ impl Arrangement {
         let last_interface = kinds[sequence.len()];
         let steps = kinds.into_iter().zip(sequence.iter().copied()).rev().collect();
         Self { material_count, layer_materials, sequence, substrate, interfaces, last_interface, steps }
+    }
+
+    /// Number of distinct layers.
+    pub fn layer_count(&self) -> usize {
+        self.layer_materials.len()
     }
 
     pub(super) fn layer_materials(&self) -> &[usize] {
@@ -151,6 +168,19 @@ impl<'a> LayeredMedium<'a> {
                 reflectance,
             ),
         }
+    }
+
+    /// Σ n d over all layers in the order they follow each other, nm, in each channel.
+    pub fn optical_thickness_nm(&self) -> Vec<f64> {
+        let mut sums = vec![0.0; self.double_wavenumbers.len()];
+        for &layer in &self.arrangement.sequence {
+            let material = &self.permittivities[self.arrangement.layer_materials[layer]];
+            for ((sum, re), im) in sums.iter_mut().zip(&material.re).zip(&material.im) {
+                // n is the real part of √ε.
+                *sum += self.thicknesses_nm[layer] * (0.5 * (re.hypot(*im) + re)).sqrt();
+            }
+        }
+        sums
     }
 
     /// The inputs of the fast kernel, where this is a single clear film far enough from total reflection.

@@ -114,6 +114,11 @@ impl IndexTable {
         (self.rows[0][0], self.rows[self.rows.len() - 1][0])
     }
 
+    /// Number of rows.
+    pub fn row_count(&self) -> usize {
+        self.rows.len()
+    }
+
     fn at(&self, wavelength_nm: f64) -> Complex64 {
         let (from, to) = self.range_nm();
         if !(from..=to).contains(&wavelength_nm) {

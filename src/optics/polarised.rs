@@ -13,11 +13,13 @@ pub struct Polarised {
 
 impl Polarised {
     /// The same value for both.
+    #[inline(always)]
     pub fn both(value: f64) -> Self {
         Self { s: value, p: value }
     }
 
     /// Mean of the two: natural light.
+    #[inline(always)]
     pub fn unpolarised(self) -> f64 {
         0.5 * (self.s + self.p)
     }
@@ -34,7 +36,8 @@ pub struct Amplitudes {
 
 /// What an interface, film or stack does to a plane wave.
 ///
-/// At normal incidence r_p = −r_s, a matter of sign convention: r_s = (q₀ − q₁)/(q₀ + q₁), r_p = (n₁²q₀ − n₀²q₁)/(n₁²q₀ + n₀²q₁).
+/// For one interface r = (q₀ − q₁)/(q₀ + q₁) for s and r = (n₁²q₀ − n₀²q₁)/(n₁²q₀ + n₀²q₁) for p, so that at normal
+/// incidence the two have opposite signs: a matter of convention.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response {
     /// Amplitudes for the field perpendicular to the plane of incidence.

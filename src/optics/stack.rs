@@ -21,29 +21,39 @@ pub struct Layer {
 /// `cos_theta` (0 to 1) to the normal. No layers is a plain interface.
 pub fn transfer(front: f64, layers: &[Layer], substrate: Complex64, cos_theta: f64, wavelength_nm: f64) -> Response {
     let wave = Wave::new(front, cos_theta, wavelength_nm);
-    let mut below = substrate;
+    let last = wave.medium(substrate);
+    let mut below = last;
     let mut s: Option<Amplitudes> = None;
     let mut p: Option<Amplitudes> = None;
     for layer in layers.iter().rev() {
-        let interface = wave.interface(layer.index, below);
-        let pass = wave.pass(*layer);
+        let medium = wave.medium(layer.index);
+        let interface = medium.interface_to(below);
+        let pass = wave.pass(medium, layer.thickness_nm);
         s = Some(through_layer(add_interface(interface.s, s), pass));
         p = Some(through_layer(add_interface(interface.p, p), pass));
-        below = layer.index;
+        below = medium;
     }
-    let first = wave.interface(Complex64::from(front), below);
-    response(&wave, substrate, add_interface(first.s, s), add_interface(first.p, p))
+    let first = wave.front.interface_to(below);
+    wave.response(last, add_interface(first.s, s), add_interface(first.p, p))
 }
 
 /// A plane wave on its way through parallel layers.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wave {
-    /// q = n cosθ in the first medium.
-    front_q: f64,
+    /// The medium that the light comes from.
+    pub(super) front: Medium,
     /// (n sinθ)², the same in every layer.
     transverse_squared: f64,
     /// 2π/λ, 1/nm.
     wavenumber: f64,
+}
+
+/// A medium as the wave meets it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Medium {
+    index: Complex64,
+    /// q = n cosθ, Im q ≥ 0.
+    q: Complex64,
 }
 
 /// Amplitudes of one interface, for one polarisation.
@@ -58,29 +68,48 @@ pub(super) struct Interfaces {
 impl Wave {
     pub(super) fn new(front: f64, cos_theta: f64, wavelength_nm: f64) -> Self {
         Self {
-            front_q: front * cos_theta,
+            // Not by the root of a difference, which loses digits near grazing incidence.
+            front: Medium { index: Complex64::from(front), q: Complex64::from(front * cos_theta) },
             transverse_squared: front * front * (1.0 - cos_theta * cos_theta).max(0.0),
             wavenumber: 2.0 * std::f64::consts::PI / wavelength_nm,
         }
     }
 
-    /// q = n cosθ with Im q ≥ 0. The principal root has it, since Im n² ≥ 0.
-    fn q(&self, index: Complex64) -> Complex64 {
-        (index * index - self.transverse_squared).sqrt()
+    /// The principal root has Im q ≥ 0, since Im n² ≥ 0.
+    pub(super) fn medium(&self, index: Complex64) -> Medium {
+        Medium { index, q: (index * index - self.transverse_squared).sqrt() }
     }
 
     /// e^{iδ}, one pass through a layer.
-    pub(super) fn pass(&self, layer: Layer) -> Complex64 {
-        (Complex64::i() * self.q(layer.index) * (self.wavenumber * layer.thickness_nm)).exp()
+    pub(super) fn pass(&self, medium: Medium, thickness_nm: f64) -> Complex64 {
+        (Complex64::i() * medium.q * (self.wavenumber * thickness_nm)).exp()
     }
 
-    /// Fresnel's amplitudes for light that goes from one medium into the next.
-    pub(super) fn interface(&self, from: Complex64, to: Complex64) -> Interfaces {
-        let (q_from, q_to) = (self.q(from), self.q(to));
-        let s_sum = q_from + q_to;
-        let s = Interface { r: (q_from - q_to) / s_sum, t: 2.0 * q_from / s_sum };
-        let (a, b) = (to * to * q_from, from * from * q_to);
-        let p = Interface { r: (a - b) / (a + b), t: 2.0 * from * to * q_from / (a + b) };
+    /// Powers from amplitudes: T = |t|² Re q/q₀ for s and |t|² Re(n cosθ*)/q₀ for p, both into the last medium.
+    pub(super) fn response(&self, last: Medium, s: Amplitudes, p: Amplitudes) -> Response {
+        let entering = |amplitude: Complex64, last: f64| {
+            // At grazing incidence t is 0 as q₀ is, and t²/q₀ with it.
+            if self.front.q.re > 0.0 { amplitude.norm_sqr() * last / self.front.q.re } else { 0.0 }
+        };
+        Response {
+            s,
+            p,
+            reflectance: Polarised { s: s.r.norm_sqr(), p: p.r.norm_sqr() },
+            transmittance: Polarised {
+                s: entering(s.t, last.q.re),
+                p: entering(p.t, (last.index * (last.q / last.index).conj()).re),
+            },
+        }
+    }
+}
+
+impl Medium {
+    /// Fresnel's amplitudes for light that goes from this medium into the next.
+    pub(super) fn interface_to(&self, to: Self) -> Interfaces {
+        let s_sum = self.q + to.q;
+        let s = Interface { r: (self.q - to.q) / s_sum, t: 2.0 * self.q / s_sum };
+        let (a, b) = (to.index * to.index * self.q, self.index * self.index * to.q);
+        let p = Interface { r: (a - b) / (a + b), t: 2.0 * self.index * to.index * self.q / (a + b) };
         Interfaces { s, p }
     }
 }
@@ -95,19 +124,4 @@ fn add_interface(interface: Interface, below: Option<Amplitudes>) -> Amplitudes 
 /// Amplitudes seen from the upper side of a layer instead of its lower side.
 fn through_layer(amplitudes: Amplitudes, pass: Complex64) -> Amplitudes {
     Amplitudes { r: amplitudes.r * pass * pass, t: amplitudes.t * pass }
-}
-
-/// Powers from amplitudes: T_s = |t|² Re q/q₀, T_p = |t|² Re(n cosθ*)/q₀, both into the last medium.
-pub(super) fn response(wave: &Wave, substrate: Complex64, s: Amplitudes, p: Amplitudes) -> Response {
-    let q = wave.q(substrate);
-    let entering = |amplitude: Complex64, last: f64| {
-        // At grazing incidence t is 0 as q₀ is, and t²/q₀ with it.
-        if wave.front_q > 0.0 { amplitude.norm_sqr() * last / wave.front_q } else { 0.0 }
-    };
-    Response {
-        s,
-        p,
-        reflectance: Polarised { s: s.r.norm_sqr(), p: p.r.norm_sqr() },
-        transmittance: Polarised { s: entering(s.t, q.re), p: entering(p.t, (substrate * (q / substrate).conj()).re) },
-    }
 }

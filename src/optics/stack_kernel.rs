@@ -7,7 +7,7 @@ use super::elementary::{exp_of_negative, sin_cos};
 use super::layered::{Arrangement, Permittivity};
 
 /// Channels worked on together: long enough for any vector unit, short enough that a block stays in the cache.
-const BLOCK: usize = 64;
+const BLOCK: usize = 32;
 
 /// Complex numbers for a block of channels.
 #[derive(Clone)]
@@ -154,7 +154,7 @@ fn amplitude(a_re: &Lane, a_im: &Lane, b_re: &Lane, b_im: &Lane, re: &mut Lane, 
     }
 }
 
-/// r ← (r_upper + r e^{2iδ})/(1 + r_upper r e^{2iδ}).
+/// r ← (r₀ + r e^{2iδ})/(1 + r₀ r e^{2iδ}), r₀ being the interface above the layer.
 #[inline(always)]
 fn add_layer(trip_re: &Lane, trip_im: &Lane, upper_re: &Lane, upper_im: &Lane, re: &mut Lane, im: &mut Lane) {
     for i in 0..BLOCK {

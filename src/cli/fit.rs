@@ -1,0 +1,96 @@
+//! `barbule fit JOB`
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Context, Result};
+use barbule::fit::{Control, StopReason};
+use barbule::job::{self, Job, Outcome};
+use barbule::report;
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::Ending;
+use super::output::{print, write_file};
+
+/// Fit a job's model to its readings and write a report.
+///
+/// Ends by printing the answer in a sentence: values ± errors, rivals that the data do not rule out, and what stays
+/// open. Ctrl-C ends the fit with the best so far.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:\n  barbule fit fits/teal-peaks\n  barbule fit my-job.toml --seed 7 --out my-report")]
+pub(super) struct Fit {
+    /// The job: its TOML file, or a folder with a job.toml in it.
+    job: PathBuf,
+    /// Folder of the report [default: reports/<job's name>].
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Seed of the start points, instead of the job's.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Number of threads [default: one a core]. The result does not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// What to print at the end.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// The answer in a sentence.
+    Text,
+    /// The whole result, as in result.json.
+    Json,
+}
+
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+impl Fit {
+    pub(super) fn run(self) -> Result<Ending> {
+        let mut job = Job::read(&self.job)?;
+        if let Some(seed) = self.seed {
+            job.set_seed(seed);
+        }
+        if let Some(threads) = self.threads {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+            pool.context("the threads cannot be started; choose a smaller --threads")?;
+        }
+        ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed)).context("Ctrl-C cannot be caught")?;
+
+        let bar = progress_bar();
+        let progress = |done: usize, total: usize| {
+            bar.set_length(total as u64);
+            bar.set_position(done as u64);
+        };
+        let outcome = job::run(&job, &Control { interrupt: &INTERRUPTED, progress: &progress })?;
+        bar.finish_and_clear();
+
+        let folder = self.out.unwrap_or_else(|| PathBuf::from("reports").join(&job.name));
+        let page = report::write_report(&outcome, &folder)?;
+        let result = serde_json::to_string_pretty(&outcome).context("the result cannot be written as JSON")?;
+        write_file(&folder.join("result.json"), &result)?;
+        match self.format {
+            Format::Json => print(&result)?,
+            Format::Text => {
+                print(&outcome.answer)?;
+                print(&format!("Report: {}", page.display()))?;
+            }
+        }
+        Ok(ending(&outcome))
+    }
+}
+
+fn ending(outcome: &Outcome) -> Ending {
+    if outcome.cases.iter().any(|case| case.fit.stop == StopReason::Failed) { Ending::FitFailed } else { Ending::Done }
+}
+
+/// A bar on a terminal, nothing otherwise.
+fn progress_bar() -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len} starts, {elapsed}");
+    ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message("fitting")
+}

@@ -1,0 +1,62 @@
+//! Subcommands, one file each.
+
+mod check;
+mod fit;
+mod models;
+mod new;
+mod output;
+mod schema;
+mod simulate;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Fit a physical model of how a feather looks to measurements of real feathers, and show how good the fit is.
+#[derive(Debug, Parser)]
+#[command(version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    New(new::New),
+    Fit(fit::Fit),
+    Simulate(simulate::Simulate),
+    Check(check::Check),
+    Models(models::Models),
+    Schema(schema::Schema),
+}
+
+/// How a command ends when nothing went wrong on the way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ending {
+    /// Exit code 0.
+    Done,
+    /// Exit code 1: everything was read, but the fit failed.
+    FitFailed,
+}
+
+/// Runs the command line: 0 done, 1 the fit failed, 2 a mistake that the user can mend.
+pub(crate) fn main() -> ExitCode {
+    let ending = match Arguments::parse().command {
+        Command::New(command) => command.run(),
+        Command::Fit(command) => command.run(),
+        Command::Simulate(command) => command.run(),
+        Command::Check(command) => command.run(),
+        Command::Models(command) => command.run(),
+        Command::Schema(command) => command.run(),
+    };
+    match ending {
+        Ok(Ending::Done) => ExitCode::SUCCESS,
+        Ok(Ending::FitFailed) => ExitCode::from(1),
+        // A reader that closes its end of a pipe has what it wanted.
+        Err(error) if output::is_broken_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("barbule: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! `barbule simulate JOB`
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use barbule::job::{self, Job, Noise};
+use clap::Args;
+
+use super::Ending;
+use super::output::{print, write_file};
+
+/// Run a job's model forward: its readings at the geometry of the job's table.
+///
+/// Free parameters take their start values, fixed ones theirs, unless --set says otherwise. The table that is written
+/// can be fitted again: `barbule new` reads it.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Example:\n  barbule simulate fits/duck-synthetic --set cortex.thickness_nm=330 --noise 0.01 --seed 3 --out table.csv"
+)]
+pub(super) struct Simulate {
+    /// The job: its TOML file, or a folder with a job.toml in it.
+    job: PathBuf,
+    /// A parameter's value; may be given several times.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
+    set: Vec<(String, f64)>,
+    /// Standard deviation of the noise as a share of each reading.
+    #[arg(long, default_value_t = 0.0)]
+    noise: f64,
+    /// Seed of the noise.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// File to write [default: standard output].
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+impl Simulate {
+    pub(super) fn run(self) -> Result<Ending> {
+        let job = Job::read(&self.job)?;
+        let noise = Noise { share: self.noise, seed: self.seed };
+        let table = job::simulate(&job, &self.set.into_iter().collect(), noise)?;
+        match self.out {
+            Some(path) => write_file(&path, &table)?,
+            None => print(table.trim_end())?,
+        }
+        Ok(Ending::Done)
+    }
+}
+
+fn setting(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    let value = value.trim().parse().map_err(|_| format!("`{value}` is not a number"))?;
+    Ok((name.trim().to_owned(), value))
+}

@@ -1,0 +1,169 @@
+//! The guard between model and solver: the one place where residuals are evaluated.
+//!
+//! It maps the free vector to all values, appends the priors as residual rows, applies the robust loss, refuses what is
+//! not finite, counts, remembers the best point of all, and hears the interrupt. Solvers behind it may fail, panic-free,
+//! in any way they like: the best point is not theirs to lose.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::assignment::Assignment;
+use super::control::Control;
+use super::linear::dot;
+use super::loss::RobustLoss;
+use super::mapping::Mapping;
+use super::outcome::Settings;
+use super::residuals::Residuals;
+
+/// A prior on one parameter, as a linear form of the free ones: (constant + Σ factor·free)/σ.
+#[derive(Debug, Clone)]
+pub(super) struct PriorRow {
+    constant: f64,
+    pub(super) terms: Vec<(usize, f64)>,
+}
+
+/// Evaluations of all objectives of one fit.
+#[derive(Debug, Default)]
+pub(super) struct Counters {
+    pub(super) evaluations: AtomicU64,
+    pub(super) not_finite: AtomicU64,
+}
+
+/// A point and its cost.
+#[derive(Debug, Clone)]
+pub(super) struct Point {
+    pub(super) free: Vec<f64>,
+    pub(super) cost: f64,
+}
+
+/// What a solver minimises: Σρ(r) over readings plus the squares of the priors.
+pub(super) struct Objective<'a> {
+    pub(super) residuals: &'a dyn Residuals,
+    pub(super) mapping: &'a Mapping,
+    pub(super) loss: RobustLoss,
+    pub(super) priors: Vec<PriorRow>,
+    pub(super) readings: usize,
+    /// What one σ of the readings is in units of the residuals: 1 where σ is known. Priors are multiplied by it.
+    pub(super) sigma: f64,
+    pub(super) control: &'a Control<'a>,
+    counters: &'a Counters,
+}
+
+impl<'a> Objective<'a> {
+    pub(super) fn new(
+        residuals: &'a dyn Residuals,
+        mapping: &'a Mapping,
+        assignments: &[Assignment],
+        settings: &Settings,
+        control: &'a Control<'a>,
+        counters: &'a Counters,
+    ) -> Self {
+        let priors = assignments.iter().enumerate().filter_map(|(index, assignment)| {
+            let prior = assignment.prior?;
+            let (constant, terms) = mapping.linear_form(index);
+            let terms = terms.into_iter().map(|(position, factor)| (position, factor / prior.sigma)).collect();
+            Some(PriorRow { constant: (constant - prior.mean) / prior.sigma, terms })
+        });
+        let priors = priors.collect();
+        let loss = RobustLoss::new(settings);
+        let readings = residuals.count();
+        Self { residuals, mapping, loss, priors, readings, sigma: 1.0, control, counters }
+    }
+
+    /// The same objective on other residuals of the same parameters.
+    pub(super) fn on(&self, residuals: &'a dyn Residuals) -> Self {
+        Self {
+            residuals,
+            mapping: self.mapping,
+            loss: self.loss,
+            priors: self.priors.clone(),
+            readings: residuals.count(),
+            sigma: self.sigma,
+            control: self.control,
+            counters: self.counters,
+        }
+    }
+
+    /// Whether there are priors to be weighed against a σ that only the fit can tell.
+    pub(super) fn weighs_priors(&self) -> bool {
+        !self.priors.is_empty() && !self.residuals.sigma_known()
+    }
+
+    /// Number of rows: readings, then priors.
+    pub(super) fn rows(&self) -> usize {
+        self.readings + self.priors.len()
+    }
+
+    /// Writes residuals and prior rows, before any loss; false, and counted, where one of them is not finite.
+    pub(super) fn evaluate(&self, free: &[f64], values: &mut [f64], rows: &mut [f64]) -> bool {
+        self.counters.evaluations.fetch_add(1, Ordering::Relaxed);
+        if !self.mapping.expand(free, values) {
+            return false;
+        }
+        let (readings, priors) = rows.split_at_mut(self.readings);
+        self.residuals.evaluate(values, readings);
+        for (row, prior) in priors.iter_mut().zip(&self.priors) {
+            *row = self.sigma
+                * prior.terms.iter().fold(prior.constant, |sum, &(position, factor)| sum + factor * free[position]);
+        }
+        // The sum of squares is finite exactly if every residual is and none is so large that the cost overflows.
+        let finite = dot(rows, rows).is_finite();
+        if !finite {
+            self.counters.not_finite.fetch_add(1, Ordering::Relaxed);
+        }
+        finite
+    }
+
+    /// Cost of rows as [`Objective::evaluate`] gives them.
+    pub(super) fn cost(&self, rows: &[f64]) -> f64 {
+        if self.loss.is_squares() {
+            return dot(rows, rows);
+        }
+        let (readings, priors) = rows.split_at(self.readings);
+        readings.iter().map(|&r| self.loss.rho(r)).sum::<f64>() + dot(priors, priors)
+    }
+
+    /// Puts rows through the loss, priors excepted.
+    pub(super) fn transform(&self, rows: &mut [f64]) {
+        if !self.loss.is_squares() {
+            rows[..self.readings].iter_mut().for_each(|row| *row = self.loss.transformed(*row));
+        }
+    }
+
+    /// Half the derivative of each row's cost: the row itself for squares and priors.
+    pub(super) fn psi(&self, rows: &[f64]) -> Vec<f64> {
+        let mut psi = rows.to_vec();
+        psi[..self.readings].iter_mut().for_each(|row| *row = self.loss.psi(*row));
+        psi
+    }
+
+    /// Evaluations so far, and how many were not finite.
+    pub(super) fn counts(&self) -> (u64, u64) {
+        (self.counters.evaluations.load(Ordering::Relaxed), self.counters.not_finite.load(Ordering::Relaxed))
+    }
+}
+
+/// The best point that a solver has seen, kept outside of it.
+#[derive(Debug, Default)]
+pub(super) struct BestSoFar(Mutex<Option<Point>>);
+
+impl BestSoFar {
+    /// Remembers the point if it is better; of two equal ones the smaller vector, so that the order of calls from
+    /// several threads does not matter.
+    pub(super) fn offer(&self, free: &[f64], cost: f64) {
+        let mut best = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let better = best.as_ref().is_none_or(|best| {
+            cost.total_cmp(&best.cost)
+                .then_with(|| free.partial_cmp(&best.free).unwrap_or(std::cmp::Ordering::Equal))
+                .is_lt()
+        });
+        if better {
+            *best = Some(Point { free: free.to_vec(), cost });
+        }
+    }
+
+    /// The best point, if any was finite.
+    pub(super) fn take(&self) -> Option<Point> {
+        self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take()
+    }
+}

@@ -1,0 +1,389 @@
+//! The result as it is written: estimates, errors, correlations, weights, goodness, warnings.
+
+use super::assignment::{Assignment, Role};
+use super::curvature::{Curvature, Inverse, directions};
+use super::minima::{Found, Likelihood, ln_weight, normalised};
+use super::objective::Objective;
+use super::outcome::{
+    Bound, Estimate, Fit, Goodness, Minimum, OpenDirection, ProfilePoint, Settings, SigmaSource, TracePoint,
+};
+use super::search::Survey;
+use super::statistics::{central_95, lag_one, one_sided_95};
+use super::warnings::warnings;
+use crate::parameter::Spread;
+
+/// A square matrix over the free parameters, with holes where there is no number.
+type Matrix = Vec<Vec<Option<f64>>>;
+
+/// Turns a finished survey into the result.
+pub(super) fn summarise(
+    objective: &Objective<'_>,
+    assignments: &[Assignment],
+    settings: &Settings,
+    survey: Survey,
+) -> Fit {
+    let Survey { minima: found, profiles, .. } = survey;
+    let best = &found[0];
+    let goodness = goodness(objective, best);
+    let errors: Vec<Option<Errors>> = found.iter().map(|found| Errors::of(objective, found)).collect();
+    let minima = minima(objective, &found, &errors, &goodness);
+    let names: Vec<String> =
+        objective.mapping.free.iter().map(|p| objective.residuals.parameters()[p.index].name.clone()).collect();
+    let (covariance, correlations) = errors[0].as_ref().map_or_else(|| no_covariance(names.len()), Errors::matrices);
+    let open_directions =
+        best.curvature.as_ref().map_or_else(Vec::new, |c| open_directions(objective, best, c, &names));
+    let estimates = estimates(objective, assignments, best, &minima[0], &goodness, &open_directions);
+    let profiles = profiles
+        .into_iter()
+        .map(|(position, points)| {
+            let points = points.iter().map(|point| ProfilePoint { value: point.free[position], cost: point.cost });
+            (names[position].clone(), points.collect())
+        })
+        .collect();
+    let trace = trace(objective, best);
+    let (evaluations, not_finite) = objective.counts();
+    let mut fit = Fit {
+        settings: settings.clone(),
+        estimates,
+        stop: best.stop,
+        minima,
+        free: names,
+        covariance,
+        correlations,
+        open_directions,
+        goodness,
+        profiles,
+        trace,
+        evaluations,
+        not_finite,
+        warnings: Vec::new(),
+    };
+    fit.warnings = warnings(&fit);
+    fit
+}
+
+#[expect(clippy::cast_precision_loss, reason = "numbers of rows are far below 2^53")]
+fn goodness(objective: &Objective<'_>, best: &Found) -> Goodness {
+    let rows = rows(objective, &best.free);
+    let readings = &rows[..objective.readings];
+    let count = readings.len() as f64;
+    let chi_squared: f64 = readings.iter().map(|r| r * r).sum();
+    let free = objective.mapping.free.len();
+    let freedom = objective.rows() as i64 - free as i64;
+    let known = objective.residuals.sigma_known();
+    let per_freedom = (freedom > 0).then(|| best.cost / freedom as f64);
+    let correlation = lag_one(readings);
+    // Within two standard errors of zero the correlation is taken as none.
+    let significant = correlation > 2.0 / count.sqrt();
+    let effective = if significant { count * (1.0 - correlation) / (1.0 + correlation) } else { count }.max(1.0);
+    let k = free as f64 + if known { 0.0 } else { 1.0 };
+    let misfit = if known { chi_squared * effective / count } else { effective * (chi_squared / count).ln() };
+    let room = effective - k - 1.0;
+    let aicc = (room > 0.0 && misfit.is_finite()).then(|| misfit + 2.0 * k + 2.0 * k * (k + 1.0) / room);
+    Goodness {
+        readings: objective.readings,
+        effective_readings: effective,
+        free_parameters: free,
+        degrees_of_freedom: freedom,
+        chi_squared,
+        reduced_chi_squared: if known && freedom > 0 { Some(chi_squared / freedom as f64) } else { None },
+        sigma_source: if known { SigmaSource::Known } else { SigmaSource::Estimated },
+        sigma_scale: if known { 1.0 } else { per_freedom.map_or(1.0, f64::sqrt) },
+        aicc,
+    }
+}
+
+fn rows(objective: &Objective<'_>, free: &[f64]) -> Vec<f64> {
+    let mut values = vec![0.0; objective.residuals.parameters().len()];
+    let mut rows = vec![0.0; objective.rows()];
+    objective.evaluate(free, &mut values, &mut rows);
+    rows
+}
+
+/// Covariance of the free parameters at one minimum.
+struct Errors {
+    /// Over all free parameters; None where one is on a bound or has no rank.
+    covariance: Matrix,
+}
+
+impl Errors {
+    fn of(objective: &Objective<'_>, found: &Found) -> Option<Self> {
+        let curvature = found.curvature.as_ref()?;
+        let sigma = sigma(objective, found.cost)?;
+        let inverse = curvature.inverse(&curvature.inner);
+        let matrix = if objective.loss.is_squares() {
+            sigma * sigma * &inverse.covariance
+        } else {
+            curvature.sandwich(objective, &curvature.inner)?
+        };
+        let size = found.free.len();
+        let mut covariance = vec![vec![None; size]; size];
+        let known: Vec<bool> = (0..curvature.inner.len()).map(|k| determined(&inverse, k)).collect();
+        for (a, &i) in curvature.inner.iter().enumerate() {
+            for (b, &j) in curvature.inner.iter().enumerate() {
+                if known[a] && known[b] {
+                    covariance[i][j] = finite(matrix[(a, b)]);
+                }
+            }
+        }
+        Some(Self { covariance })
+    }
+
+    /// Covariance and correlations.
+    fn matrices(&self) -> (Matrix, Matrix) {
+        let size = self.covariance.len();
+        let mut correlations = vec![vec![None; size]; size];
+        for (i, row) in correlations.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                let parts = (self.covariance[i][j], self.covariance[i][i], self.covariance[j][j]);
+                if let (Some(shared), Some(a), Some(b)) = parts {
+                    *entry = finite(shared / (a * b).sqrt()).map(|r| r.clamp(-1.0, 1.0));
+                }
+            }
+        }
+        (self.covariance.clone(), correlations)
+    }
+
+    /// Standard error of constant + Σ factor·free, over the parameters that can move.
+    fn standard_error(&self, terms: &[(usize, f64)], at_bound: &[Option<Bound>]) -> Option<f64> {
+        let moving: Vec<&(usize, f64)> = terms.iter().filter(|term| at_bound[term.0].is_none()).collect();
+        if moving.is_empty() {
+            return None;
+        }
+        let mut variance = 0.0;
+        for &&(i, a) in &moving {
+            for &&(j, b) in &moving {
+                variance += a * b * self.covariance[i][j]?;
+            }
+        }
+        finite(variance.max(0.0).sqrt())
+    }
+}
+
+fn no_covariance(size: usize) -> (Matrix, Matrix) {
+    (vec![vec![None; size]; size], vec![vec![None; size]; size])
+}
+
+/// Whether column `k` takes no part in a direction without rank.
+fn determined(inverse: &Inverse, k: usize) -> bool {
+    inverse.missing.iter().all(|direction| {
+        let largest = direction.iter().fold(0.0, |most: f64, share| most.max(share.abs()));
+        direction[k].abs() <= 1e-3 * largest
+    })
+}
+
+/// σ of the readings; None where it would have to come from residuals that are not there.
+fn sigma(objective: &Objective<'_>, cost: f64) -> Option<f64> {
+    if objective.residuals.sigma_known() {
+        return Some(1.0);
+    }
+    let freedom = objective.rows().checked_sub(objective.mapping.free.len()).filter(|&freedom| freedom > 0)?;
+    #[expect(clippy::cast_precision_loss, reason = "a number of rows is far below 2^53")]
+    Some((cost / freedom as f64).sqrt())
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+fn ranges(objective: &Objective<'_>) -> Vec<f64> {
+    objective.mapping.free.iter().map(|parameter| parameter.upper - parameter.lower).collect()
+}
+
+fn minima(objective: &Objective<'_>, found: &[Found], errors: &[Option<Errors>], goodness: &Goodness) -> Vec<Minimum> {
+    let ranges = ranges(objective);
+    let likelihood = if objective.residuals.sigma_known() {
+        Likelihood::Known
+    } else {
+        Likelihood::Unknown { readings: goodness.effective_readings, floor: f64::MIN_POSITIVE }
+    };
+    let ln_weight = |found: &Found| {
+        found.curvature.as_ref().map_or(f64::NEG_INFINITY, |curvature| {
+            ln_flat_prior(objective, &found.free) + ln_weight(found.cost, curvature, &ranges, likelihood)
+        })
+    };
+    let weights = normalised(&found.iter().map(ln_weight).collect::<Vec<_>>());
+    let count = objective.residuals.parameters().len();
+    let minimum = |((found, errors), weight): ((&Found, &Option<Errors>), f64)| {
+        let mut values = vec![0.0; count];
+        objective.mapping.expand(&found.free, &mut values);
+        let error = |index| {
+            let (errors, curvature) = (errors.as_ref()?, found.curvature.as_ref()?);
+            errors.standard_error(&objective.mapping.linear_form(index).1, &curvature.at_bound)
+        };
+        let rows = rows(objective, &found.free);
+        #[expect(clippy::cast_precision_loss, reason = "a number of readings is far below 2^53")]
+        let mean = rows[..objective.readings].iter().map(|r| r * r).sum::<f64>() / objective.readings.max(1) as f64;
+        Minimum {
+            values,
+            standard_errors: (0..count).map(error).collect(),
+            cost: found.cost,
+            rms: mean.sqrt(),
+            weight,
+            hits: found.hits,
+            stop: found.stop,
+        }
+    };
+    found.iter().zip(errors).zip(weights).map(minimum).collect()
+}
+
+/// ln of the density that stands for knowing nothing beforehand: even in a parameter that is spread evenly, and even in
+/// the logarithm, 1/x, of one that is spread so (a thickness, a gain), whose scale is not known. A parameter with a prior
+/// of its own has that in the cost.
+fn ln_flat_prior(objective: &Objective<'_>, free: &[f64]) -> f64 {
+    let has_prior = |j: usize| objective.priors.iter().any(|prior| matches!(prior.terms[..], [(k, _)] if k == j));
+    let declared = objective.mapping.free.iter().zip(free).enumerate();
+    declared
+        .filter(|(j, (parameter, _))| parameter.spread == Spread::Logarithmic && !has_prior(*j))
+        .map(|(_, (_, value))| -value.ln())
+        .sum()
+}
+
+fn estimates(
+    objective: &Objective<'_>,
+    assignments: &[Assignment],
+    best: &Found,
+    minimum: &Minimum,
+    goodness: &Goodness,
+    open: &[OpenDirection],
+) -> Vec<Estimate> {
+    #[expect(clippy::cast_precision_loss, reason = "degrees of freedom are far below 2^53")]
+    let freedom = (goodness.sigma_source == SigmaSource::Estimated).then(|| goodness.degrees_of_freedom.max(1) as f64);
+    let quantile = central_95(freedom);
+    let parameters = objective.residuals.parameters();
+    let estimate = |index: usize| {
+        let (parameter, assignment) = (&parameters[index], &assignments[index]);
+        let value = minimum.values[index];
+        let standard_error = minimum.standard_errors[index];
+        let position = objective.mapping.free.iter().position(|free| free.index == index);
+        let at_bound = position.and_then(|j| best.curvature.as_ref()?.at_bound[j]);
+        let (role, start, range) = match &assignment.role {
+            Role::Free { start, lower, upper } => ("free", Some(*start), [*lower, *upper]),
+            Role::Fixed(_) => ("fixed", None, [parameter.lower, parameter.upper]),
+            Role::Tied { .. } => ("tied", None, [parameter.lower, parameter.upper]),
+        };
+        let interval_95 = match (at_bound, position) {
+            (Some(side), Some(j)) => one_sided(objective, best, j, side, range),
+            _ => standard_error
+                .map(|error| [(value - quantile * error).max(range[0]), (value + quantile * error).min(range[1])]),
+        };
+        Estimate {
+            name: parameter.name.clone(),
+            symbol: parameter.symbol.clone(),
+            unit: parameter.unit.to_owned(),
+            text: parameter.text.clone(),
+            role: role.to_owned(),
+            value,
+            start,
+            bounds: (role == "free" && range[0].is_finite() && range[1].is_finite()).then_some(range),
+            prior: assignment.prior.map(|prior| [prior.mean, prior.sigma]),
+            standard_error,
+            interval_95,
+            at_bound,
+            open: open.iter().any(|direction| direction.shares.iter().any(|(name, _)| *name == parameter.name)),
+        }
+    };
+    (0..parameters.len()).map(estimate).collect()
+}
+
+/// The interval from a bound inwards that holds 95 % of the likelihood.
+fn one_sided(objective: &Objective<'_>, best: &Found, j: usize, side: Bound, range: [f64; 2]) -> Option<[f64; 2]> {
+    let curvature = best.curvature.as_ref()?;
+    let sigma = sigma(objective, best.cost)?;
+    let mut positions = curvature.inner.clone();
+    positions.push(j);
+    let inverse = curvature.inverse(&positions);
+    let last = positions.len() - 1;
+    if !determined(&inverse, last) {
+        return Some(range).filter(|range| range.iter().all(|bound| bound.is_finite()));
+    }
+    let width = sigma * inverse.covariance[(last, last)].sqrt();
+    let reach = one_sided_95(curvature.gradient[j].abs() / (sigma * sigma), width);
+    let interval = match side {
+        Bound::Lower => [range[0], (range[0] + reach).min(range[1])],
+        Bound::Upper => [(range[1] - reach).max(range[0]), range[1]],
+    };
+    interval.iter().all(|bound| bound.is_finite()).then_some(interval)
+}
+
+/// Combinations of relative changes that the readings do not tell apart.
+fn open_directions(
+    objective: &Objective<'_>,
+    best: &Found,
+    curvature: &Curvature,
+    names: &[String],
+) -> Vec<OpenDirection> {
+    let ranges = ranges(objective);
+    let size = |j: usize| {
+        let value = best.free[j].abs();
+        if value > 0.0 {
+            value
+        } else if ranges[j].is_finite() {
+            ranges[j]
+        } else {
+            1.0
+        }
+    };
+    let mut matrix = curvature.columns(&curvature.inner);
+    for (k, &j) in curvature.inner.iter().enumerate() {
+        matrix.column_mut(k).scale_mut(size(j));
+    }
+    let directions = directions(matrix);
+    let largest = directions.first().map_or(0.0, |direction| direction.0);
+    let sigma = sigma(objective, best.cost);
+    let mut open = Vec::new();
+    for (value, direction) in directions {
+        let no_rank = value <= 1e-9 * largest;
+        // Twice 1.96 standard errors along the direction against the width of the box.
+        let wider = sigma.is_some_and(|sigma| {
+            curvature
+                .inner
+                .iter()
+                .zip(&direction)
+                .any(|(&j, share)| share.abs() * size(j) * 3.92 * sigma / value >= ranges[j] && share.abs() > 0.1)
+        });
+        if no_rank || wider {
+            open.push(describe(&curvature.inner, &direction, names, value / largest.max(f64::MIN_POSITIVE)));
+        }
+    }
+    open
+}
+
+fn describe(inner: &[usize], direction: &[f64], names: &[String], relative: f64) -> OpenDirection {
+    let mut shares: Vec<(String, f64)> = inner
+        .iter()
+        .zip(direction)
+        .filter(|(_, share)| share.abs() > 0.1)
+        .map(|(&j, &share)| (names[j].clone(), share))
+        .collect();
+    // Shares that are equal but for rounding keep the order of the parameters.
+    shares.sort_by(|a, b| (1e6 * b.1.abs()).round().total_cmp(&(1e6 * a.1.abs()).round()));
+    if shares.first().is_some_and(|first| first.1 < 0.0) {
+        shares.iter_mut().for_each(|share| share.1 = -share.1);
+    }
+    let listed: Vec<String> = shares.iter().map(|(name, _)| format!("`{name}`")).collect();
+    let text = match listed.as_slice() {
+        [one] => format!("The readings do not determine {one}."),
+        [first @ .., last] => {
+            format!("The readings give {} and {last} only as a combination, not each by itself.", first.join(", "))
+        }
+        [] => String::new(),
+    };
+    OpenDirection { shares, relative_singular_value: relative, text }
+}
+
+/// Cost of the full problem along the way of the start that won, each point an improvement.
+fn trace(objective: &Objective<'_>, best: &Found) -> Vec<TracePoint> {
+    let mut values = vec![0.0; objective.residuals.parameters().len()];
+    let mut rows = vec![0.0; objective.rows()];
+    let mut trace: Vec<TracePoint> = Vec::new();
+    for free in &best.path {
+        if objective.evaluate(free, &mut values, &mut rows) {
+            let cost = objective.cost(&rows);
+            if trace.last().is_none_or(|last| cost < last.cost) {
+                trace.push(TracePoint { iteration: trace.len() as u64, cost });
+            }
+        }
+    }
+    trace
+}

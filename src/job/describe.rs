@@ -1,0 +1,54 @@
+//! What a job would do, in words, before it is done.
+
+use std::fmt::Write;
+
+use super::case::Comparison;
+use super::model_note::model_note;
+use super::{Job, JobError};
+use crate::fit::{Assignment, Role};
+use crate::parameter::Parameter;
+
+/// Checks a job and its data, and says what a fit would do.
+pub fn describe(job: &Job) -> Result<String, JobError> {
+    let mut text = format!("{}\n", job.file.title);
+    for case in job.cases()?.0 {
+        let residuals = case.residuals();
+        let readings = match &case.comparison {
+            Comparison::Spectra(table, fitted, _) => format!(
+                "{} of {} spectra, {} readings",
+                fitted.iter().filter(|fitted| **fitted).count(),
+                table.spectra.len(),
+                residuals.count()
+            ),
+            Comparison::Peaks(table, _, _) => {
+                format!("{} of {} peak wavelengths", residuals.count(), table.readings.len())
+            }
+        };
+        let sigma = if residuals.sigma_known() { "σ known" } else { "σ unknown, to be estimated from the residuals" };
+        let settings = &case.file.fit;
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "\nCase {}\n  fits {readings}; {sigma}", case.file.case);
+        let _ = writeln!(text, "  {}", model_note(&case.file)?.text);
+        let _ = writeln!(text, "  from {} starts, seed {}", settings.starts, settings.seed);
+        for (parameter, assignment) in residuals.parameters().iter().zip(&case.assignments) {
+            let _ =
+                writeln!(text, "  {:<30} {}", parameter.name, role_text(parameter, assignment, residuals.parameters()));
+        }
+    }
+    Ok(text.trim_end().to_owned())
+}
+
+fn role_text(parameter: &Parameter, assignment: &Assignment, all: &[Parameter]) -> String {
+    let role = match &assignment.role {
+        Role::Free { start, lower, upper } => format!("free from {lower} to {upper}, first start {start}"),
+        Role::Fixed(value) => format!("fixed at {value}"),
+        Role::Tied { constant, terms } => {
+            let terms = terms.iter().map(|(index, factor)| format!("{factor} × {}", all[*index].name));
+            let sum: Vec<String> = std::iter::once(constant.to_string()).chain(terms).collect();
+            format!("tied: {}", sum.join(" + "))
+        }
+    };
+    let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
+    let prior = assignment.prior.map_or_else(String::new, |prior| format!(", prior {} ± {}", prior.mean, prior.sigma));
+    format!("{role}{unit}{prior}")
+}

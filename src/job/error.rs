@@ -1,0 +1,54 @@
+//! What can be wrong with a job, each in a sentence that names the file and key and says how to mend it.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::bsdf::ModelError;
+use crate::fit::FitError;
+use crate::measure::TableError;
+
+/// A job that cannot be run as it is written.
+#[derive(Debug, Error)]
+pub enum JobError {
+    /// The job file is not there or cannot be read.
+    #[error("{}: {reason}; give a job's TOML file, or a folder with a job.toml in it", .path.display())]
+    Unreadable {
+        /// The path as given.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+    /// The text is not a job: bad TOML, an unknown key, a value of the wrong kind.
+    #[error("{}: {message}", .path.display())]
+    Syntax {
+        /// The job file.
+        path: PathBuf,
+        /// Line, key, what was found and what was expected.
+        message: String,
+    },
+    /// A key whose value makes no sense.
+    #[error("{key}: {problem}")]
+    Key {
+        /// The key: `data.file`.
+        key: String,
+        /// What was found, what was expected, and how to mend it.
+        problem: String,
+    },
+    /// The table.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The model.
+    #[error("model: {0}")]
+    Model(#[from] ModelError),
+    /// The fit could not begin.
+    #[error("parameters: {0}")]
+    Fit(#[from] FitError),
+}
+
+impl JobError {
+    /// A key whose value makes no sense.
+    pub(super) fn key(key: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self::Key { key: key.into(), problem: problem.into() }
+    }
+}

@@ -1,0 +1,68 @@
+//! What a methods section says of a case's model and instrument.
+
+use super::file::ModelFile;
+use super::outcome::ModelNote;
+use super::{JobError, JobFile};
+use crate::bsdf::CoatedBase;
+use crate::measure::{Calibration, Instrument, PhaseJumps};
+use crate::optics::Reference;
+
+/// Sentences, materials and works to cite.
+pub(super) fn model_note(file: &JobFile) -> Result<ModelNote, JobError> {
+    let note = match &file.model {
+        ModelFile::ThinFilmLaw(design) => {
+            let law = match design.phase_jumps {
+                PhaseJumps::Both => "2 d √(n² − sin²θ) = m λ, both reflections of the film turning the phase alike",
+                PhaseJumps::One => "2 d √(n² − sin²θ) = (m − ½) λ, one reflection of the film turning the phase",
+            };
+            ModelNote {
+                kind: "thin-film-law".into(),
+                text: format!(
+                    "Peak wavelengths λ at inclination θ were fitted by the law of a single film of thickness d and \
+                     constant refractive index n in air, {law} (Born & Wolf 1999). The law leaves out absorption, \
+                     dispersion and the dependence of a reflection's phase on wavelength."
+                ),
+                materials: Vec::new(),
+                references: vec![Reference {
+                    key: "Born & Wolf 1999".into(),
+                    citation: "Born M, Wolf E (1999) Principles of Optics, 7th edition, section 7.6. Cambridge \
+                               University Press."
+                        .into(),
+                }],
+            }
+        }
+        ModelFile::CoatedBase(design) => {
+            let described = CoatedBase::new(design, &[500.0])?.describe();
+            ModelNote {
+                kind: "coated-base".into(),
+                text: described.text,
+                materials: described.materials,
+                references: described.references,
+            }
+        }
+    };
+    let text = format!("{} {}", note.text, instrument_text(&file.instrument));
+    Ok(ModelNote { text: text.trim().to_owned(), ..note })
+}
+
+/// The instrument in a sentence; empty for an ideal one with known gain.
+fn instrument_text(instrument: &Instrument) -> String {
+    let mut parts = Vec::new();
+    if instrument.light_half_angle_deg > 0.0 || instrument.viewer_half_angle_deg > 0.0 {
+        parts.push(format!(
+            "averaged over cones of half-angle {}° (light) and {}° (viewer)",
+            instrument.light_half_angle_deg, instrument.viewer_half_angle_deg
+        ));
+    }
+    if instrument.bandwidth_nm > 0.0 {
+        parts.push(format!("smoothed to a bandwidth of {} nm (full width at half maximum)", instrument.bandwidth_nm));
+    }
+    for (word, calibration) in [("gain", instrument.gain), ("offset", instrument.offset)] {
+        match calibration {
+            Calibration::Fixed => {}
+            Calibration::Shared => parts.push(format!("given one free {word} for all spectra")),
+            Calibration::PerSpectrum => parts.push(format!("given a free {word} for each spectrum")),
+        }
+    }
+    if parts.is_empty() { String::new() } else { format!("The model's readings were {}.", parts.join(", ")) }
+}

@@ -1,0 +1,622 @@
+//! Where everything of a figure goes: a [`Figure`] becomes a list of shapes in page pixels.
+
+use super::chart::{Axis, AxisKind, Cell, Chart, Figure, Layer, Look, Map, Mark, Point, Series, length};
+use super::palette::{BLACK, Colour, GREY, INK, PALE, Scale, WHITE, is_light};
+use super::plot::{Align, Drawing, Shape, text_width};
+use super::ticks::{Tick, linear, logarithmic};
+
+const TITLE_SIZE: f64 = 14.0;
+const CELL_TITLE_SIZE: f64 = 12.0;
+const LABEL_SIZE: f64 = 12.0;
+const TICK_SIZE: f64 = 11.0;
+const MARGIN: f64 = 4.0;
+const TITLE_HEIGHT: f64 = 26.0;
+const CELL_TITLE_HEIGHT: f64 = 20.0;
+const LEGEND_ROW_HEIGHT: f64 = 20.0;
+const TICK_LENGTH: f64 = 4.0;
+const TICK_ROW_HEIGHT: f64 = 18.0;
+const LABEL_ROW_HEIGHT: f64 = 18.0;
+const BAR_HEIGHT: f64 = 10.0;
+const GAP: f64 = 10.0;
+/// Right of a frame, for the half of the last tick's label that stands beyond it.
+const RIGHT_ROOM: f64 = 14.0;
+const MARK_RADIUS: f64 = 3.4;
+const LEGEND_SAMPLE: f64 = 26.0;
+
+/// The area between a chart's axes.
+#[derive(Debug, Clone, Copy)]
+struct Frame {
+    left: f64,
+    top: f64,
+    right: f64,
+    bottom: f64,
+}
+
+impl Frame {
+    fn width(&self) -> f64 {
+        self.right - self.left
+    }
+
+    fn height(&self) -> f64 {
+        self.bottom - self.top
+    }
+}
+
+/// Lays a figure out.
+pub(crate) fn drawing(figure: &Figure) -> Drawing {
+    let width = f64::from(figure.width);
+    let mut shapes = Vec::new();
+    let title = shortened(&figure.title, TITLE_SIZE, true, width - 2.0 * MARGIN);
+    shapes.push(text(title, (MARGIN, MARGIN + 8.0), TITLE_SIZE, Align::Start).bold());
+    let mut top = MARGIN + TITLE_HEIGHT;
+    top = legend(figure, top, &mut shapes);
+
+    let columns = figure.columns.max(1);
+    // Left of each frame: the axis's name in the first column, ticks in all, unless all cells have the same rows.
+    let tick_width = figure.cells.iter().map(widest_y_tick).fold(0.0, f64::max) + TICK_LENGTH + 4.0;
+    let shares_rows = figure.cells.len() <= columns && have_same_bands(&figure.cells);
+    let lead = |column: usize| match column {
+        0 => LABEL_ROW_HEIGHT + tick_width,
+        _ if shares_rows => 0.0,
+        _ => tick_width,
+    };
+    let leads: f64 = (0..columns).map(lead).sum();
+    let frame_width = (width - 2.0 * MARGIN - leads - GAP * length(columns - 1)) / length(columns);
+    for (row, cells) in figure.cells.chunks(columns).enumerate() {
+        let heights: Vec<f64> = cells
+            .iter()
+            .enumerate()
+            .map(|(column, cell)| {
+                let before: f64 = (0..column).map(|c| lead(c) + frame_width + GAP).sum();
+                let place = CellPlace {
+                    left: MARGIN + before,
+                    top,
+                    lead: lead(column),
+                    frame_width,
+                    ticks_y: column == 0 || !shares_rows,
+                    names_y: column == 0,
+                    names_x: (row + 1) * columns + column >= figure.cells.len(),
+                };
+                lay_cell(cell, place, &mut shapes)
+            })
+            .collect();
+        top += heights.into_iter().fold(0.0, f64::max) + GAP;
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a page height, some thousand pixels")]
+    let height = top.ceil() as u32;
+    Drawing { width: figure.width, height, shapes }
+}
+
+/// Writes the legend from `top` down and returns where it ends. One entry a name; none where there is only one series.
+fn legend(figure: &Figure, top: f64, shapes: &mut Vec<Shape>) -> f64 {
+    let mut entries: Vec<&Series> = Vec::new();
+    for layer in figure.cells.iter().flat_map(|c| &c.charts).flat_map(|c| &c.layers) {
+        if let Layer::Series(series) = layer
+            && !series.points.is_empty()
+            && !entries.iter().any(|e| e.name == series.name)
+        {
+            entries.push(series);
+        }
+    }
+    if entries.len() < 2 {
+        return top;
+    }
+    let right = f64::from(figure.width) - MARGIN;
+    let (mut x, mut y) = (MARGIN, top + 6.0);
+    for series in entries {
+        let name = shortened(&series.name, LABEL_SIZE, false, right - MARGIN - LEGEND_SAMPLE - 6.0);
+        let width = LEGEND_SAMPLE + 6.0 + text_width(&name, LABEL_SIZE, false) + 18.0;
+        if x > MARGIN && x + width > right {
+            (x, y) = (MARGIN, y + LEGEND_ROW_HEIGHT);
+        }
+        sample(series.look, (x, y), shapes);
+        shapes.push(text(name, (x + LEGEND_SAMPLE + 6.0, y), LABEL_SIZE, Align::Start).into());
+        x += width;
+    }
+    y + LEGEND_ROW_HEIGHT
+}
+
+fn sample(look: Look, (x, y): (f64, f64), shapes: &mut Vec<Shape>) {
+    match look {
+        Look::Line { colour, width, dashed } => {
+            stroke(&[(x, y), (x + LEGEND_SAMPLE, y)], colour, width, dashed, shapes);
+        }
+        Look::Marks { colour, mark, open } => marker((x + LEGEND_SAMPLE / 2.0, y), mark, colour, open, shapes),
+        Look::Both { colour, mark, dashed } => {
+            stroke(&[(x, y), (x + LEGEND_SAMPLE, y)], colour, 1.4, dashed, shapes);
+            marker((x + LEGEND_SAMPLE / 2.0, y), mark, colour, false, shapes);
+        }
+    }
+}
+
+/// Room that a cell gets.
+#[derive(Debug, Clone, Copy)]
+struct CellPlace {
+    left: f64,
+    top: f64,
+    /// Room left of the frame, and the frame's own width, so that frames stand in line.
+    lead: f64,
+    frame_width: f64,
+    /// Whether this cell writes the ticks of its y axis and the names of its axes; neighbours share them.
+    ticks_y: bool,
+    names_y: bool,
+    names_x: bool,
+}
+
+/// Draws a cell and returns its height.
+fn lay_cell(cell: &Cell, place: CellPlace, shapes: &mut Vec<Shape>) -> f64 {
+    let left = place.left + place.lead;
+    let right = left + place.frame_width - RIGHT_ROOM;
+    let mut top = place.top;
+    if !cell.title.is_empty() {
+        let title = shortened(&cell.title, CELL_TITLE_SIZE, true, right - left);
+        shapes.push(text(title, (left, top + 8.0), CELL_TITLE_SIZE, Align::Start).bold());
+        top += CELL_TITLE_HEIGHT;
+    }
+    for (index, chart) in cell.charts.iter().enumerate() {
+        let is_last = index + 1 == cell.charts.len();
+        let frame = Frame { left, top, right, bottom: top + chart.height };
+        lay_chart(chart, frame, shapes);
+        if place.ticks_y {
+            y_ticks(&chart.y, frame, shapes);
+        }
+        if place.names_y {
+            let at = (place.left + 7.0, (frame.top + frame.bottom) / 2.0);
+            let label = shortened(&chart.y.label, LABEL_SIZE, false, frame.height() + GAP);
+            shapes.push(text(label, at, LABEL_SIZE, Align::Middle).upwards());
+        }
+        top = frame.bottom;
+        if is_last {
+            x_ticks(&chart.x, frame, shapes);
+            top += TICK_LENGTH + TICK_ROW_HEIGHT;
+            if place.names_x {
+                let label = shortened(&chart.x.label, LABEL_SIZE, false, frame.width() + 2.0 * GAP);
+                let middle = (frame.left + frame.right) / 2.0;
+                shapes.push(text(label, (middle, top + 5.0), LABEL_SIZE, Align::Middle).into());
+                top += LABEL_ROW_HEIGHT;
+            }
+            if let Some(map) = first_map(chart) {
+                top = colour_bar(map, frame, top + 6.0, shapes);
+            }
+        } else {
+            top += GAP;
+        }
+    }
+    top - place.top + 4.0
+}
+
+fn lay_chart(chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
+    let has_map = first_map(chart).is_some();
+    if !has_map {
+        for tick in ticks(&chart.y, frame.height() / 30.0) {
+            if let Some(y) = place_y(&chart.y, tick.at, frame) {
+                shapes.push(line(&[(frame.left, y), (frame.right, y)], PALE, 0.7));
+            }
+        }
+    }
+    // Boxes that a note must not cover: middle, half width, half height.
+    let mut taken = marker_boxes(chart, frame);
+    for layer in &chart.layers {
+        match layer {
+            Layer::Series(series) => lay_series(series, chart, frame, shapes),
+            Layer::Map(map) => lay_map(map, chart, frame, shapes),
+            Layer::Level(at) => {
+                if let Some(y) = place_y(&chart.y, *at, frame) {
+                    shapes.push(line(&[(frame.left, y), (frame.right, y)], GREY, 1.0));
+                }
+            }
+            Layer::Upright(at) => {
+                if let Some(x) = place_x(&chart.x, *at, frame) {
+                    stroke(&[(x, frame.top), (x, frame.bottom)], GREY, 1.0, true, shapes);
+                }
+            }
+            Layer::Note { x, y, text: note } => {
+                let (Some(x), Some(y)) = (place_x(&chart.x, *x, frame), place_y(&chart.y, *y, frame)) else { continue };
+                let half = text_width(note, TICK_SIZE, false) / 2.0;
+                let x = x.clamp(frame.left + half + 3.0, frame.right - half);
+                let is_free = |y: &f64| {
+                    (frame.top + 5.0..frame.bottom - 5.0).contains(y)
+                        && !taken.iter().any(|((tx, ty), w, h)| (x - tx).abs() < half + w && (y - ty).abs() < 6.0 + h)
+                };
+                if let Some(y) = [y - 12.0, y + 12.0].into_iter().find(is_free) {
+                    taken.push(((x, y), half + 3.0, 6.0));
+                    shapes.push(text(note.clone(), (x, y), TICK_SIZE, Align::Middle).into());
+                }
+            }
+        }
+    }
+    let corners = [(frame.left, frame.top), (frame.left, frame.bottom), (frame.right, frame.bottom)];
+    shapes.push(line(&corners, INK, 1.0));
+}
+
+fn marker_boxes(chart: &Chart, frame: Frame) -> Vec<((f64, f64), f64, f64)> {
+    let marked = chart.layers.iter().filter_map(|layer| match layer {
+        Layer::Series(series) if !matches!(series.look, Look::Line { .. }) => Some(&series.points),
+        _ => None,
+    });
+    marked
+        .flatten()
+        .filter_map(|p| Some(((x_of(&chart.x, p.x, frame)?, y_of(&chart.y, p.y, frame)?), MARK_RADIUS, MARK_RADIUS)))
+        .collect()
+}
+
+fn lay_series(series: &Series, chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
+    let at = |p: &Point| Some((x_of(&chart.x, p.x, frame)?, y_of(&chart.y, p.y, frame)?));
+    let (line_look, mark_look) = match series.look {
+        Look::Line { colour, width, dashed } => (Some((colour, width, dashed)), None),
+        Look::Marks { colour, mark, open } => (None, Some((colour, mark, open))),
+        Look::Both { colour, mark, dashed } => (Some((colour, 1.4, dashed)), Some((colour, mark, false))),
+    };
+    if let Some((colour, width, dashed)) = line_look {
+        let points: Vec<_> = series.points.iter().filter_map(at).collect();
+        for piece in clipped(&points, frame) {
+            stroke(&thinned(&piece), colour, width, dashed, shapes);
+        }
+    }
+    if let Some((colour, mark, open)) = mark_look {
+        for point in &series.points {
+            let Some((x, y)) = at(point) else { continue };
+            if !(frame.left - 0.5..=frame.right + 0.5).contains(&x) {
+                continue;
+            }
+            if let Some(error) = point.error {
+                let ends = [point.y - error, point.y + error].map(|y| y_of(&chart.y, y, frame));
+                if let [Some(low), Some(high)] = ends {
+                    let (low, high) = (low.clamp(frame.top, frame.bottom), high.clamp(frame.top, frame.bottom));
+                    shapes.push(line(&[(x, low), (x, high)], colour, 1.0));
+                    for end in [low, high] {
+                        shapes.push(line(&[(x - 2.5, end), (x + 2.5, end)], colour, 1.0));
+                    }
+                }
+            }
+            if (frame.top - 0.5..=frame.bottom + 0.5).contains(&y) {
+                marker((x, y), mark, colour, open, shapes);
+            }
+        }
+    }
+}
+
+fn lay_map(map: &Map, chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
+    for (index, row) in map.rows.iter().enumerate() {
+        let (Some(one), Some(other)) = (y_of(&chart.y, length(index), frame), y_of(&chart.y, length(index + 1), frame))
+        else {
+            continue;
+        };
+        let (top, bottom) = (one.min(other), one.max(other));
+        let border = |column: usize| map.borders.get(column).and_then(|b| x_of(&chart.x, *b, frame));
+        // Neighbours of one colour become one rectangle: a smooth map is then a tenth of its size.
+        let mut column = 0;
+        while column < row.len() {
+            let colour = row[column].map(|v| map.scale.colour(stepped(v, map.scale)));
+            let mut end = column + 1;
+            while !map.with_numbers
+                && end < row.len()
+                && row[end].map(|v| map.scale.colour(stepped(v, map.scale))) == colour
+            {
+                end += 1;
+            }
+            if let (Some(left), Some(right)) = (border(column), border(end)) {
+                // A little under its neighbours, which are drawn later, so that no seam shows between them.
+                let overlap = if map.with_numbers { 0.0 } else { 0.6 };
+                let (from, to) =
+                    ((left, top), ((right + overlap).min(frame.right), (bottom + overlap).min(frame.bottom)));
+                shapes.push(Shape::Rectangle { from, to, colour: colour.unwrap_or(PALE) });
+                match (colour, row[column]) {
+                    (Some(colour), Some(value)) if map.with_numbers => {
+                        let ink = if is_light(colour) { BLACK } else { WHITE };
+                        let number = crate::number::correlation(value, 2);
+                        let at = ((left + right) / 2.0, (top + bottom) / 2.0);
+                        shapes.push(text(number, at, TICK_SIZE, Align::Middle).coloured(ink));
+                    }
+                    (None, _) => hatch(from, to, shapes),
+                    _ => {}
+                }
+            }
+            column = end;
+        }
+    }
+}
+
+/// A value moved to the middle of one of 64 steps of the scale, more than an eye tells apart.
+fn stepped(value: f64, scale: Scale) -> f64 {
+    const STEPS: f64 = 64.0;
+    let (low, high) = scale.range();
+    let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
+    low + (high - low) * (share * STEPS).round() / STEPS
+}
+
+fn hatch(from: (f64, f64), to: (f64, f64), shapes: &mut Vec<Shape>) {
+    let (width, height) = (to.0 - from.0, to.1 - from.1);
+    let mut offset = 6.0;
+    while offset < width + height {
+        let start = (from.0 + offset.min(width), from.1 + (offset - width).max(0.0));
+        let end = (from.0 + (offset - height).max(0.0), from.1 + offset.min(height));
+        shapes.push(line(&[start, end], GREY, 0.7));
+        offset += 6.0;
+    }
+}
+
+/// Draws the bar of a map's colours below it and returns where it ends.
+fn colour_bar(map: &Map, frame: Frame, top: f64, shapes: &mut Vec<Shape>) -> f64 {
+    const STEPS: u32 = 64;
+    let (low, high) = map.scale.range();
+    let bar = Frame { left: frame.left, top, right: frame.right, bottom: top + BAR_HEIGHT };
+    for step in 0..STEPS {
+        let edge = |s: u32| bar.left + bar.width() * f64::from(s) / f64::from(STEPS);
+        let value = low + (high - low) * (f64::from(step) + 0.5) / f64::from(STEPS);
+        let colour = map.scale.colour(value);
+        shapes.push(Shape::Rectangle {
+            from: (edge(step), top),
+            to: ((edge(step + 1) + 0.6).min(bar.right), bar.bottom),
+            colour,
+        });
+    }
+    let axis = Axis::linear(map.label.clone(), (low, high));
+    x_ticks(&axis, bar, shapes);
+    let at = ((bar.left + bar.right) / 2.0, bar.bottom + TICK_LENGTH + TICK_ROW_HEIGHT + 5.0);
+    let label = shortened(&map.label, LABEL_SIZE, false, bar.width() + 40.0);
+    shapes.push(text(label, at, LABEL_SIZE, Align::Middle).into());
+    at.1 + LABEL_ROW_HEIGHT / 2.0
+}
+
+fn x_ticks(axis: &Axis, frame: Frame, shapes: &mut Vec<Shape>) {
+    let mut free_from = f64::NEG_INFINITY;
+    for tick in ticks(axis, frame.width() / 46.0) {
+        let Some(x) = place_x(axis, tick.at, frame) else { continue };
+        if !matches!(axis.kind, AxisKind::Bands(_)) {
+            shapes.push(line(&[(x, frame.bottom), (x, frame.bottom + TICK_LENGTH)], INK, 1.0));
+        }
+        let half = text_width(&tick.label, TICK_SIZE, false) / 2.0;
+        if x - half >= free_from {
+            let at = (x, frame.bottom + TICK_LENGTH + 8.0);
+            shapes.push(text(tick.label, at, TICK_SIZE, Align::Middle).into());
+            free_from = x + half + 4.0;
+        }
+    }
+}
+
+fn y_ticks(axis: &Axis, frame: Frame, shapes: &mut Vec<Shape>) {
+    let mut last: Option<f64> = None;
+    for tick in ticks(axis, frame.height() / 30.0) {
+        let Some(y) = place_y(axis, tick.at, frame) else { continue };
+        if !matches!(axis.kind, AxisKind::Bands(_)) {
+            shapes.push(line(&[(frame.left - TICK_LENGTH, y), (frame.left, y)], INK, 1.0));
+        }
+        if last.is_none_or(|l| (l - y).abs() >= 13.0) {
+            let label = shortened(&tick.label, TICK_SIZE, false, WIDEST_TICK);
+            shapes.push(text(label, (frame.left - TICK_LENGTH - 3.0, y), TICK_SIZE, Align::End).into());
+            last = Some(y);
+        }
+    }
+}
+
+/// Whether all cells have the same named rows, so that naming them once is enough.
+fn have_same_bands(cells: &[Cell]) -> bool {
+    let bands = |cell: &Cell| match cell.charts.as_slice() {
+        [Chart { y: Axis { kind: AxisKind::Bands(names), .. }, .. }] => Some(names.clone()),
+        _ => None,
+    };
+    let mut all = cells.iter().map(bands);
+    all.next().flatten().is_some_and(|first| all.all(|other| other.as_ref() == Some(&first)))
+}
+
+/// The widest label beside a y axis, page pixels; longer names are cut.
+const WIDEST_TICK: f64 = 210.0;
+
+fn widest_y_tick(cell: &Cell) -> f64 {
+    cell.charts
+        .iter()
+        .flat_map(|chart| ticks(&chart.y, chart.height / 30.0))
+        .map(|tick| text_width(&tick.label, TICK_SIZE, false).min(WIDEST_TICK))
+        .fold(0.0, f64::max)
+}
+
+fn ticks(axis: &Axis, wanted: f64) -> Vec<Tick> {
+    let (low, high) = (axis.low.min(axis.high), axis.low.max(axis.high));
+    match &axis.kind {
+        AxisKind::Linear => linear(low, high, wanted.max(2.0)),
+        AxisKind::Logarithmic => logarithmic(low, high, wanted.max(2.0)),
+        AxisKind::Bands(names) => names
+            .iter()
+            .enumerate()
+            .map(|(index, name)| Tick { at: length(index) + 0.5, label: name.clone() })
+            .collect(),
+    }
+}
+
+fn first_map(chart: &Chart) -> Option<&Map> {
+    chart.layers.iter().find_map(|layer| if let Layer::Map(map) = layer { Some(map) } else { None })
+}
+
+fn x_of(axis: &Axis, value: f64, frame: Frame) -> Option<f64> {
+    Some(frame.left + axis.share(value)? * frame.width())
+}
+
+fn y_of(axis: &Axis, value: f64, frame: Frame) -> Option<f64> {
+    Some(frame.bottom - axis.share(value)? * frame.height())
+}
+
+/// Like [`x_of`], only for values inside the axis.
+fn place_x(axis: &Axis, value: f64, frame: Frame) -> Option<f64> {
+    x_of(axis, value, frame).filter(|x| (frame.left - 0.5..=frame.right + 0.5).contains(x))
+}
+
+fn place_y(axis: &Axis, value: f64, frame: Frame) -> Option<f64> {
+    y_of(axis, value, frame).filter(|y| (frame.top - 0.5..=frame.bottom + 0.5).contains(y))
+}
+
+/// The parts of a polyline inside the frame (Liang and Barsky 1984, segment by segment).
+fn clipped(points: &[(f64, f64)], frame: Frame) -> Vec<Vec<(f64, f64)>> {
+    let mut pieces: Vec<Vec<(f64, f64)>> = Vec::new();
+    let mut is_open = false;
+    for pair in points.windows(2) {
+        let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
+        let (dx, dy) = (x1 - x0, y1 - y0);
+        let (mut from, mut to) = (0.0f64, 1.0f64);
+        for (towards, room) in
+            [(-dx, x0 - frame.left), (dx, frame.right - x0), (-dy, y0 - frame.top), (dy, frame.bottom - y0)]
+        {
+            if towards < 0.0 {
+                from = from.max(room / towards);
+            } else if towards > 0.0 {
+                to = to.min(room / towards);
+            } else if room < 0.0 {
+                to = f64::NEG_INFINITY;
+            }
+        }
+        if from > to {
+            is_open = false;
+            continue;
+        }
+        let (start, end) = ((x0 + from * dx, y0 + from * dy), (x0 + to * dx, y0 + to * dy));
+        match pieces.last_mut().filter(|_| is_open && from <= 0.0) {
+            Some(piece) => piece.push(end),
+            None => pieces.push(vec![start, end]),
+        }
+        is_open = to >= 1.0;
+    }
+    pieces
+}
+
+/// The polyline without the points that lie within a tenth of a pixel of it (Douglas and Peucker 1973).
+fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    const TOLERANCE: f64 = 0.1;
+    let mut keep = vec![false; points.len()];
+    let mut open = vec![(0, points.len().saturating_sub(1))];
+    while let Some((first, last)) = open.pop() {
+        if last >= points.len() {
+            continue;
+        }
+        (keep[first], keep[last]) = (true, true);
+        let farthest = (first + 1..last)
+            .map(|i| (i, distance_to_segment(points[i], points[first], points[last])))
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((index, distance)) = farthest
+            && distance > TOLERANCE
+        {
+            open.push((first, index));
+            open.push((index, last));
+        }
+    }
+    points.iter().zip(keep).filter_map(|(p, keep)| keep.then_some(*p)).collect()
+}
+
+fn distance_to_segment(point: (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let squared = dx * dx + dy * dy;
+    let along = if squared > 0.0 {
+        (((point.0 - from.0) * dx + (point.1 - from.1) * dy) / squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    (point.0 - from.0 - along * dx).hypot(point.1 - from.1 - along * dy)
+}
+
+/// A line, or its dashes.
+fn stroke(points: &[(f64, f64)], colour: Colour, width: f64, dashed: bool, shapes: &mut Vec<Shape>) {
+    const DASH: f64 = 5.0;
+    const SPACE: f64 = 3.0;
+    if !dashed {
+        shapes.push(line(points, colour, width));
+        return;
+    }
+    let (mut is_drawn, mut left) = (true, DASH);
+    let mut dash: Vec<(f64, f64)> = points.first().copied().into_iter().collect();
+    for pair in points.windows(2) {
+        let (mut from, to) = (pair[0], pair[1]);
+        loop {
+            let distance = (to.0 - from.0).hypot(to.1 - from.1);
+            if distance <= left {
+                left -= distance;
+                dash.push(to);
+                break;
+            }
+            let share = left / distance;
+            from = (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1));
+            dash.push(from);
+            if is_drawn {
+                shapes.push(line(&dash, colour, width));
+            }
+            dash = vec![from];
+            (is_drawn, left) = (!is_drawn, if is_drawn { SPACE } else { DASH });
+        }
+    }
+    if is_drawn && dash.len() > 1 {
+        shapes.push(line(&dash, colour, width));
+    }
+}
+
+fn marker(centre: (f64, f64), mark: Mark, colour: Colour, open: bool, shapes: &mut Vec<Shape>) {
+    let mut filled = |radius: f64, colour: Colour| {
+        let corners: &[(f64, f64)] = match mark {
+            Mark::Disc => {
+                shapes.push(Shape::Disc { centre, radius, colour });
+                return;
+            }
+            Mark::Square => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
+            Mark::Diamond => &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
+            Mark::Triangle => &[(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)],
+        };
+        let points = corners.iter().map(|(x, y)| (centre.0 + radius * x, centre.1 + radius * y)).collect();
+        shapes.push(Shape::Polygon { points, colour });
+    };
+    filled(MARK_RADIUS, colour);
+    if open {
+        filled(MARK_RADIUS - 1.4, WHITE);
+    }
+}
+
+fn line(points: &[(f64, f64)], colour: Colour, width: f64) -> Shape {
+    Shape::Line { points: points.to_vec(), colour, width }
+}
+
+/// A text on its way to become a shape.
+struct Writing {
+    text: String,
+    at: (f64, f64),
+    size: f64,
+    align: Align,
+}
+
+fn text(text: String, at: (f64, f64), size: f64, align: Align) -> Writing {
+    Writing { text, at, size, align }
+}
+
+impl Writing {
+    fn shape(self, colour: Colour, bold: bool, upwards: bool) -> Shape {
+        Shape::Text { text: self.text, at: self.at, size: self.size, align: self.align, colour, bold, upwards }
+    }
+
+    fn bold(self) -> Shape {
+        self.shape(INK, true, false)
+    }
+
+    fn upwards(self) -> Shape {
+        self.shape(INK, false, true)
+    }
+
+    fn coloured(self, colour: Colour) -> Shape {
+        self.shape(colour, false, false)
+    }
+}
+
+impl From<Writing> for Shape {
+    fn from(writing: Writing) -> Self {
+        writing.shape(INK, false, false)
+    }
+}
+
+/// The text, cut with an ellipsis where it is wider than there is room.
+fn shortened(text: &str, size: f64, bold: bool, room: f64) -> String {
+    if text_width(text, size, bold) <= room {
+        return text.to_owned();
+    }
+    let mut kept: Vec<char> = text.chars().collect();
+    while kept.pop().is_some() {
+        let candidate: String = kept.iter().collect::<String>().trim_end().to_owned() + "…";
+        if text_width(&candidate, size, bold) <= room {
+            return candidate;
+        }
+    }
+    String::new()
+}

@@ -1,0 +1,129 @@
+//! The report of a fit: one folder with a page that answers in its first sentence, its plots and their numbers.
+//!
+//! ```text
+//! index.html      self-contained: styles and plots inside, no script, nothing fetched
+//! plots/*.svg     every plot as on the page, and as PNG
+//! curves/*.csv    every plotted curve and map
+//! ```
+//!
+//! An [`Outcome`] becomes figures ([`plots`]) and the texts and tables of a page ([`page`]); a figure becomes a picture
+//! ([`layout`], [`plot`]) and tables ([`curves`]). Nothing here computes a physical quantity except the colours of
+//! swatches. The same outcome gives the same bytes.
+
+mod angles;
+mod chart;
+mod curves;
+mod files;
+mod layout;
+mod methods;
+mod page;
+mod palette;
+mod plot;
+mod plots;
+mod readings;
+mod swatch;
+mod tables;
+mod ticks;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::job::{Case, Outcome};
+use chart::Figure;
+use plots::Place;
+
+/// Why a report could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// A file or folder could not be written.
+    #[error("cannot write {}: {source}. Check that the folder may be written to and that the disk has room.", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A plot could not be painted.
+    #[error("the plot `{figure}` could not be painted: {text}")]
+    Paint {
+        /// The plot's file name without extension.
+        figure: String,
+        /// What the painter said.
+        text: String,
+    },
+    /// The page could not be put together.
+    #[error("the page could not be put together: {0}")]
+    Page(String),
+}
+
+/// Writes the report into `folder`, which is made where it is missing, and returns the path of its page.
+///
+/// Each file is written under a temporary name and then renamed, the page last: a run that is killed leaves old files or
+/// new ones, never half of one. Files of an earlier report that the new one does not have stay where they are.
+///
+/// # Errors
+///
+/// If a file cannot be written. No outcome is refused: what it lacks is left out of the page.
+pub fn write_report(outcome: &Outcome, folder: &Path) -> Result<PathBuf, ReportError> {
+    let chapters: Vec<Chapter> =
+        outcome.cases.iter().enumerate().map(|(index, _)| Chapter::draw(outcome, index)).collect::<Result<_, _>>()?;
+    for picture in chapters.iter().flat_map(|c| &c.pictures) {
+        let name = &picture.figure.name;
+        files::write(&folder.join("plots").join(format!("{name}.svg")), picture.svg.as_bytes())?;
+        files::write(&folder.join("plots").join(format!("{name}.png")), &picture.png)?;
+        for table in &picture.tables {
+            files::write(&folder.join("curves").join(&table.file), table.csv.as_bytes())?;
+        }
+    }
+    let page = folder.join("index.html");
+    files::write(&page, page::html(outcome, &chapters)?.as_bytes())?;
+    Ok(page)
+}
+
+/// The pictures of one case.
+struct Chapter<'a> {
+    case: &'a Case,
+    pictures: Vec<Picture>,
+}
+
+/// A figure, painted.
+struct Picture {
+    place: Place,
+    figure: Figure,
+    svg: String,
+    png: Vec<u8>,
+    tables: Vec<curves::CurveTable>,
+}
+
+impl<'a> Chapter<'a> {
+    fn draw(outcome: &'a Outcome, index: usize) -> Result<Self, ReportError> {
+        let case = &outcome.cases[index];
+        let figures = plots::ALL.iter().flat_map(|plot| (plot.draw)(case).into_iter().map(|f| (plot.place, f)));
+        let pictures = figures
+            .map(|(place, mut figure)| {
+                // A plot may leave its page: its file and its title then say whose it is.
+                if outcome.cases.len() > 1 {
+                    figure.name = format!("case-{}-{}", index + 1, figure.name);
+                    figure.title = format!("{} · {}", figure.title, case.name);
+                }
+                if outcome.synthetic.is_some() {
+                    figure.title = format!("Synthetic readings · {}", figure.title);
+                }
+                Picture::paint(place, figure)
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { case, pictures })
+    }
+}
+
+impl Picture {
+    fn paint(place: Place, figure: Figure) -> Result<Self, ReportError> {
+        let failed =
+            |error: &dyn std::fmt::Display| ReportError::Paint { figure: figure.name.clone(), text: error.to_string() };
+        let drawing = layout::drawing(&figure);
+        let svg = plot::svg(&drawing, &figure.title).map_err(|e| failed(&e))?;
+        let png = plot::png(&drawing).map_err(|e| failed(&e))?;
+        let tables = curves::tables(&figure).map_err(|e| failed(&e))?;
+        Ok(Self { place, figure, svg, png, tables })
+    }
+}

@@ -1,0 +1,56 @@
+//! The plots of a report, one file each. A new plot is a new file and one line in [`ALL`].
+
+mod convergence;
+mod correlation;
+mod maps;
+mod peaks;
+mod predicted;
+mod profile;
+mod spectra;
+mod support;
+
+use super::chart::Figure;
+use crate::fit::{Fit, Loss, SigmaSource};
+use crate::job::Case;
+
+/// The part of the page where a figure stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// Measured and fitted.
+    Data,
+    /// Every minimum.
+    Minima,
+    /// What the data cannot tell apart.
+    Correlations,
+    /// Whether a film is supported.
+    Support,
+    /// How the solver went.
+    Convergence,
+}
+
+/// A plot: where it stands and what draws it. It draws nothing where a case has no such data.
+pub(crate) struct Plot {
+    pub(crate) place: Place,
+    pub(crate) draw: fn(&Case) -> Vec<Figure>,
+}
+
+/// Every plot, in the order of the page.
+pub(crate) const ALL: &[Plot] = &[
+    Plot { place: Place::Data, draw: spectra::draw },
+    Plot { place: Place::Data, draw: maps::draw },
+    Plot { place: Place::Data, draw: peaks::draw },
+    Plot { place: Place::Data, draw: predicted::draw },
+    Plot { place: Place::Minima, draw: profile::draw },
+    Plot { place: Place::Correlations, draw: correlation::draw },
+    Plot { place: Place::Support, draw: support::draw },
+    Plot { place: Place::Convergence, draw: convergence::draw },
+];
+
+/// What the cost is, as an axis says it. It has no unit.
+fn cost_label(fit: &Fit) -> &'static str {
+    match (fit.settings.loss, fit.goodness.sigma_source) {
+        (Loss::Squares, SigmaSource::Known) => "cost (χ²)",
+        (Loss::Squares, SigmaSource::Estimated) => "cost (weighted squares)",
+        _ => "cost (robust)",
+    }
+}

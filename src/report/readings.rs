@@ -1,0 +1,75 @@
+//! One reading at a time: what a case's data hold in parallel lists.
+
+use crate::job::{Case, CaseData, SpectrumFit};
+use crate::measure::Quantity;
+
+/// One reading of a spectrum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Reading {
+    pub(crate) wavelength_nm: f64,
+    pub(crate) measured: f64,
+    pub(crate) model: f64,
+    pub(crate) used: bool,
+}
+
+impl Reading {
+    /// Model minus reading.
+    pub(crate) fn residual(&self) -> f64 {
+        self.model - self.measured
+    }
+}
+
+/// The readings of a spectrum, in the order of their wavelengths.
+pub(crate) fn of(spectrum: &SpectrumFit) -> impl Iterator<Item = Reading> {
+    let values = spectrum.measured.iter().zip(&spectrum.model);
+    spectrum.wavelengths_nm.iter().zip(values).enumerate().map(|(index, (wavelength_nm, (measured, model)))| Reading {
+        wavelength_nm: *wavelength_nm,
+        measured: *measured,
+        model: *model,
+        used: spectrum.used.get(index).copied().unwrap_or(true),
+    })
+}
+
+/// Name and unit of what was measured, as an axis says it.
+pub(crate) fn quantity_label(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Brdf => "BRDF (1/sr)",
+        Quantity::BsdfCos => "BRDF × cos θₒ (1/sr)",
+        Quantity::Reflectance => "reflectance",
+    }
+}
+
+/// What a reader must know of the quantity's scale.
+pub(crate) fn quantity_note(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Reflectance => "Reflectance is relative to a white standard in the same instrument, which has 1.",
+        Quantity::Brdf | Quantity::BsdfCos => "",
+    }
+}
+
+/// Unit of what was measured, as it follows a number.
+fn quantity_unit(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Brdf | Quantity::BsdfCos => "/sr",
+        Quantity::Reflectance => "",
+    }
+}
+
+/// Root mean square of model minus reading over what the fit saw, with its unit.
+pub(crate) fn rms(case: &Case) -> Option<String> {
+    let (residuals, unit): (Vec<f64>, &str) = match &case.data {
+        CaseData::Spectra { quantity, spectra } => (
+            spectra.iter().filter(|s| s.fitted).flat_map(of).filter(|r| r.used).map(|r| r.residual()).collect(),
+            quantity_unit(*quantity),
+        ),
+        CaseData::Peaks { peaks, .. } => {
+            let fitted = peaks.iter().filter(|p| p.fitted);
+            (fitted.filter_map(|p| Some(p.model_nm? - p.measured_nm)).collect(), " nm")
+        }
+    };
+    if residuals.is_empty() {
+        return None;
+    }
+    let mean = residuals.iter().map(|r| r * r).sum::<f64>() / super::chart::length(residuals.len());
+    Some(format!("{}{unit}", crate::number::significant(mean.sqrt(), 3)))
+}
