@@ -3,6 +3,7 @@
 mod coated_base;
 mod colour;
 mod coverage;
+mod cylinder;
 mod data;
 mod directions;
 mod engine;
@@ -13,6 +14,7 @@ mod optics;
 mod oracle;
 mod order;
 mod paints;
+mod pigment;
 mod report;
 mod rough_plastic;
 mod tables;
