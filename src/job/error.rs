@@ -27,6 +27,22 @@ pub enum JobError {
         /// Line, key, what was found and what was expected.
         message: String,
     },
+    /// Another error, with where in the job it lies.
+    #[error("{place}: {error}")]
+    Placed {
+        /// File, line and case.
+        place: String,
+        /// What is wrong there.
+        error: Box<JobError>,
+    },
+    /// An option of the command line whose value makes no sense for this job.
+    #[error("{option}: {problem}")]
+    Option {
+        /// The option: `--set`.
+        option: &'static str,
+        /// What was found, what was expected, and how to mend it.
+        problem: String,
+    },
     /// A key whose value makes no sense.
     #[error("{key}: {problem}")]
     Key {
@@ -42,7 +58,7 @@ pub enum JobError {
     #[error("model: {0}")]
     Model(#[from] ModelError),
     /// The fit could not begin.
-    #[error("parameters: {0}")]
+    #[error(transparent)]
     Fit(#[from] FitError),
 }
 

@@ -9,8 +9,12 @@ use tempfile::NamedTempFile;
 use super::ReportError;
 
 /// Writes beside the file and renames, making its folder where it is missing.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
-    let folder = path.parent().unwrap_or(Path::new("."));
+///
+/// # Errors
+///
+/// If the folder cannot be made or written to, or the disk is full; then the file is as it was before.
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let put = || {
         fs::create_dir_all(folder)?;
         let mut file = NamedTempFile::new_in(folder)?;

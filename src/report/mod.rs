@@ -32,6 +32,8 @@ use crate::job::{Case, Outcome};
 use chart::Figure;
 use plots::Place;
 
+pub use files::write as write_file;
+
 /// Why a report could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
