@@ -20,11 +20,13 @@ pub enum JobError {
         reason: String,
     },
     /// The text is not a job: bad TOML, an unknown key, a value of the wrong kind.
-    #[error("{}: {message}", .path.display())]
+    #[error("{}{}: {message}", .path.display(), at_line(*.line))]
     Syntax {
         /// The job file.
         path: PathBuf,
-        /// Line, key, what was found and what was expected.
+        /// The line, where the message does not show it itself.
+        line: Option<usize>,
+        /// Key, what was found and what was expected.
         message: String,
     },
     /// Another error, with where in the job it lies.
@@ -60,6 +62,11 @@ pub enum JobError {
     /// The fit could not begin.
     #[error(transparent)]
     Fit(#[from] FitError),
+}
+
+/// `, line 3` where it is known.
+pub(super) fn at_line(line: Option<usize>) -> String {
+    line.map_or_else(String::new, |line| format!(", line {line}"))
 }
 
 impl JobError {

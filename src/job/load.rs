@@ -6,6 +6,7 @@ use std::{fs, io};
 use sha2::{Digest, Sha256};
 
 use super::case::{CheckedCase, read_data};
+use super::error::at_line;
 use super::syntax::{keys_of, line_of, parse};
 use super::{AlternativeFile, InputFile, JobError, JobFile};
 use crate::fit::FitError;
@@ -56,13 +57,13 @@ impl Job {
         let named =
             if path.is_dir() { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() };
         let name = named.file_stem().map_or_else(|| "job".into(), |stem| stem.to_string_lossy().into_owned());
-        let file = parse(&text).map_err(|message| JobError::Syntax { path: file_path.clone(), message })?;
+        let file = parse(&text, &file_path)?;
         Ok(Self { name, path: file_path, folder, file, text, inputs: vec![input] })
     }
 
     /// A job from its text, with paths that count from `folder`.
     pub fn from_text(name: &str, text: &str, folder: &Path) -> Result<Self, JobError> {
-        let file = parse(text).map_err(|message| JobError::Syntax { path: PathBuf::from(name), message })?;
+        let file = parse(text, Path::new(name))?;
         let (name, path, text) = (name.to_owned(), PathBuf::from(name), text.to_owned());
         Ok(Self { name, path, folder: folder.to_owned(), file, text, inputs: Vec::new() })
     }
@@ -107,7 +108,7 @@ impl Job {
         };
         let other = case.checked_sub(1).and_then(|other| self.file.alternative.get(other));
         let keys = if other.is_some_and(owns) { &own } else { &keys };
-        let line = line_of(&self.text, keys).map_or_else(String::new, |line| format!(", line {line}"));
+        let line = at_line(line_of(&self.text, keys));
         let case = other.map_or_else(String::new, |other| format!(", case \"{}\"", other.case));
         JobError::Placed { place: format!("{}{line}{case}", self.path.display()), error: Box::new(error) }
     }

@@ -3,24 +3,26 @@
 //! Serde's own words (`expected f64`, `missing field`) speak to programmers, and of the model, whose kind decides its
 //! keys, serde does not say where it went wrong. So a slip is looked up once more, and said in words.
 
+use std::path::Path;
+
 use serde::de::DeserializeOwned;
 use serde_path_to_error::Segment;
 use toml::de::{DeTable, DeValue};
 
-use super::JobFile;
+use super::{JobError, JobFile};
 use crate::bsdf::Design;
 use crate::measure::{ThinFilmLawDesign, nearest};
 
-/// Parses a job, or says in which line and key it goes wrong. The sentence begins with `line 3: ` where a line is known.
-pub(super) fn parse(text: &str) -> Result<JobFile, String> {
+/// Parses a job, or says in which line and key it goes wrong.
+pub(super) fn parse(text: &str, path: &Path) -> Result<JobFile, JobError> {
+    let refused = |line, message| JobError::Syntax { path: path.to_owned(), line, message };
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let table: toml::Table = toml::from_str(text).map_err(|error| error.to_string().trim().to_owned())?;
+    let table = toml::from_str(text).map_err(|error| refused(None, error.to_string().trim().to_owned()))?;
     let value = toml::Value::Table(table);
     deserialise(value.clone()).map_err(|slip| {
         let slip = in_model(&value, &slip).unwrap_or(slip);
-        let line = line_of(text, &slip.keys).map_or_else(String::new, |line| format!("line {line}: "));
         let section = if slip.keys.is_empty() { String::new() } else { format!("{}: ", written(&slip.keys)) };
-        format!("{line}{section}{}", in_words(&slip.message))
+        refused(line_of(text, &slip.keys), format!("{section}{}", in_words(&slip.message)))
     })
 }
 
@@ -125,6 +127,11 @@ fn in_words(message: &str) -> String {
         }
         [name] if message.starts_with("missing field") => format!("the key `{name}` is missing; add it"),
         _ => {
+            let length =
+                message.strip_prefix("invalid length ").and_then(|m| m.split_once(", expected an array of length "));
+            if let Some((found, expected)) = length {
+                return format!("found a list of {found}; expected one of {expected}");
+            }
             let found = message.strip_prefix("invalid type: ").or_else(|| message.strip_prefix("invalid value: "));
             match found.and_then(|found| found.split_once(", expected ")) {
                 Some((found, expected)) => format!("found {}; expected {}", thing(found), wanted(expected)),
