@@ -10,7 +10,9 @@ use serde_path_to_error::Segment;
 use toml::de::{DeTable, DeValue};
 
 use super::{JobError, JobFile};
-use crate::bsdf::Design;
+use crate::bsdf::{
+    Design, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign, RoughPlasticDesign,
+};
 use crate::measure::{ThinFilmLawDesign, nearest};
 
 /// Parses a job, or says in which line and key it goes wrong.
@@ -89,6 +91,11 @@ fn in_model(job: &toml::Value, slip: &Slip) -> Option<Slip> {
     let model = toml::Value::Table(model);
     let mut inner = match kind.as_str()? {
         "coated-base" => deserialise::<Design>(model).err()?,
+        "microfacet" => deserialise::<MicrofacetDesign>(model).err()?,
+        "rough-plastic" => deserialise::<RoughPlasticDesign>(model).err()?,
+        "iridescent-plastic" => deserialise::<IridescentPlasticDesign>(model).err()?,
+        "granier-heidrich" => deserialise::<GranierHeidrichDesign>(model).err()?,
+        "lambertian" => deserialise::<LambertianDesign>(model).err()?,
         "thin-film-law" => deserialise::<ThinFilmLawDesign>(model).err()?,
         _ => return None,
     };

@@ -1,7 +1,5 @@
 //! The program as its user meets it: what it says to a mistake, what it prints, what it leaves behind.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
-
 use std::fs;
 use std::io::{BufRead, BufReader, Read};
 use std::process::Stdio;

@@ -1,7 +1,5 @@
 //! A user's desk: a folder with a few files, and commands run in it through the real program.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

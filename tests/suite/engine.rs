@@ -71,6 +71,7 @@ struct Film {
     /// cos θ inside and λ of each reading.
     geometry: Vec<(f64, f64)>,
     readings: Vec<f64>,
+    coarse: Option<Box<Film>>,
 }
 
 impl Film {
@@ -97,7 +98,14 @@ impl Film {
                 readings.push(value * (1.0 + 0.01 * normal(&mut random)));
             }
         }
-        Self { parameters, geometry, readings }
+        let chosen = || (0..readings.len()).filter(|k| k.is_multiple_of(13));
+        let coarse = Self {
+            parameters: parameters.clone(),
+            geometry: chosen().map(|k| geometry[k]).collect(),
+            readings: chosen().map(|k| readings[k]).collect(),
+            coarse: None,
+        };
+        Self { parameters, geometry, readings, coarse: Some(Box::new(coarse)) }
     }
 }
 
@@ -122,14 +130,8 @@ impl Residuals for Film {
         }
     }
 
-    fn coarse(&self) -> Option<Box<dyn Residuals + '_>> {
-        let pick = |k: &usize| k.is_multiple_of(13);
-        let chosen: Vec<usize> = (0..self.readings.len()).filter(pick).collect();
-        Some(Box::new(Self {
-            parameters: self.parameters.clone(),
-            geometry: chosen.iter().map(|&k| self.geometry[k]).collect(),
-            readings: chosen.iter().map(|&k| self.readings[k]).collect(),
-        }))
+    fn coarse(&self) -> Option<&dyn Residuals> {
+        self.coarse.as_deref().map(|film| film as &dyn Residuals)
     }
 
     fn sigma_known(&self) -> bool {

@@ -1,7 +1,5 @@
 //! Whole jobs, from the table to the answer.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
-
 use std::fs;
 
 use serde_json::Value;

@@ -1,7 +1,5 @@
 //! The schemas say what the files hold: they are current, and every job and result agrees with them.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
-
 use std::fs;
 use std::path::Path;
 
