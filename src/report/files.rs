@@ -1,7 +1,7 @@
 //! Files that are either old or new, never torn.
 
 use std::fs;
-use std::io::Write;
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use tempfile::NamedTempFile;
@@ -26,14 +26,22 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
     put().map_err(|source| ReportError::Write { path: path.to_owned(), source })
 }
 
+/// What the system said, in words for people.
+pub(super) fn reason(error: &io::Error) -> String {
+    match error.kind() {
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => "a file stands where its folder should be".to_owned(),
+        _ => error.to_string().split(" (os error").next().unwrap_or_default().to_owned(),
+    }
+}
+
 /// Temporary files are private to their owner; a report is made to be shown.
 #[cfg(unix)]
-fn readable_by_all(file: &NamedTempFile) -> std::io::Result<()> {
+fn readable_by_all(file: &NamedTempFile) -> io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
     file.as_file().set_permissions(fs::Permissions::from_mode(0o644))
 }
 
 #[cfg(not(unix))]
-fn readable_by_all(_: &NamedTempFile) -> std::io::Result<()> {
+fn readable_by_all(_: &NamedTempFile) -> io::Result<()> {
     Ok(())
 }

@@ -38,7 +38,7 @@ pub use files::write as write_file;
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// A file or folder could not be written.
-    #[error("cannot write {}: {source}. Check that the folder may be written to and that the disk has room.", path.display())]
+    #[error("cannot write {}: {}. Check that the folder may be written to and that the disk has room.", path.display(), files::reason(source))]
     Write {
         /// The file or folder.
         path: PathBuf,

@@ -177,7 +177,7 @@ fn a_table_that_is_wrong_is_named_with_its_line() {
     with("angle,peak_nm\n15,560\n30,548\n").barbule("check job.toml").succeeds().prints("2 of 2 peak wavelengths");
     for (table, parts) in [
         ("angle,peak_nm\n15,560\n30,NaN\n", ["peaks.csv, line 3", "NaN"]),
-        ("angle,peak_nm\n15,0.560\n30,0.548\n", ["peaks.csv", "µm"]),
+        ("angle,peak_nm\n15,0.560\n30,0.548\n", ["peaks.csv", "micrometres"]),
         ("angle,peak\n15,560\n", ["peaks.csv, line 1", "did you mean \"peak\""]),
         ("", ["peaks.csv", "empty"]),
     ] {
