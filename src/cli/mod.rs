@@ -59,7 +59,8 @@ pub(crate) fn main() -> ExitCode {
         // A reader that closes its end of a pipe has what it wanted.
         Err(error) if output::is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("barbule: {}", output::sentence(&error));
+            // Every error quotes its cause where that helps its reader.
+            eprintln!("barbule: {error}");
             ExitCode::from(2)
         }
     }

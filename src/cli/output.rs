@@ -20,19 +20,6 @@ pub(super) fn check_writable(folder: &Path) -> Result<()> {
     probe.with_context(|| format!("{} cannot be written to; choose another folder with --out", folder.display()))
 }
 
-/// The error and its causes in one line, each said once: a cause that its consequence quotes is not said again.
-pub(super) fn sentence(error: &anyhow::Error) -> String {
-    let mut text = String::new();
-    for cause in error.chain().map(ToString::to_string) {
-        if text.is_empty() {
-            text = cause;
-        } else if !text.contains(&cause) {
-            text += &format!(": {cause}");
-        }
-    }
-    text
-}
-
 /// Whether an error is only the other end of a pipe being closed.
 pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error

@@ -187,7 +187,7 @@ fn a_table_that_is_wrong_is_named_with_its_line() {
         "kind = \"coated-base\"\nlayers = [{ name = \"film\", material = \"keratin\", thickness_nm = 300 }]\nsubstrate = \"bird_melanin\"",
         "kind = \"thin-film-law\"",
     );
-    refused(&law, &["film.toml, line 15: ", "model.kind", "the table holds spectra", "use `coated-base`"]);
+    refused(&law, &["film.toml, line 15: ", "model.kind", "not spectra", "use `coated-base`"]);
 }
 
 #[test]
