@@ -12,12 +12,12 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Ending;
-use super::output::{print, write_file};
+use super::output::{check_writable, print};
 
 /// Fit a job's model to its readings and write a report.
 ///
 /// Ends by printing the answer in a sentence: values ± errors, rivals that the data do not rule out, and what stays
-/// open. Ctrl-C ends the fit with the best so far.
+/// open. Ctrl-C ends the fit with the best so far, and its report says so; a second one quits at once.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  barbule fit fits/teal-peaks\n  barbule fit my-job.toml --seed 7 --out my-report")]
 pub(super) struct Fit {
@@ -27,11 +27,11 @@ pub(super) struct Fit {
     #[arg(long)]
     out: Option<PathBuf>,
     /// Seed of the start points, instead of the job's.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Number of threads [default: one a core]. The result does not depend on it.
-    #[arg(long)]
-    threads: Option<usize>,
+    #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
     /// What to print at the end.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -47,6 +47,14 @@ enum Format {
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
+/// The first Ctrl-C asks the fit to end; the second does not wait for it.
+fn interrupt() {
+    if INTERRUPTED.swap(true, Ordering::Relaxed) {
+        std::process::exit(130);
+    }
+    eprintln!("barbule: ending with the best so far; Ctrl-C once more quits at once");
+}
+
 impl Fit {
     pub(super) fn run(self) -> Result<Ending> {
         let mut job = Job::read(&self.job)?;
@@ -54,10 +62,12 @@ impl Fit {
             job.set_seed(seed);
         }
         if let Some(threads) = self.threads {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
             pool.context("the threads cannot be started; choose a smaller --threads")?;
         }
-        ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed)).context("Ctrl-C cannot be caught")?;
+        let folder = self.out.unwrap_or_else(|| PathBuf::from("reports").join(&job.name));
+        check_writable(&folder)?;
+        ctrlc::set_handler(interrupt).context("Ctrl-C cannot be caught")?;
 
         let bar = progress_bar();
         let progress = |done: usize, total: usize| {
@@ -67,10 +77,9 @@ impl Fit {
         let outcome = job::run(&job, &Control { interrupt: &INTERRUPTED, progress: &progress })?;
         bar.finish_and_clear();
 
-        let folder = self.out.unwrap_or_else(|| PathBuf::from("reports").join(&job.name));
         let page = report::write_report(&outcome, &folder)?;
         let result = serde_json::to_string_pretty(&outcome).context("the result cannot be written as JSON")?;
-        write_file(&folder.join("result.json"), &result)?;
+        report::write_file(&folder.join("result.json"), result.as_bytes())?;
         match self.format {
             Format::Json => print(&result)?,
             Format::Text => {

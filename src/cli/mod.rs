@@ -14,7 +14,11 @@ use clap::{Parser, Subcommand};
 
 /// Fit a physical model of how a feather looks to measurements of real feathers, and show how good the fit is.
 #[derive(Debug, Parser)]
-#[command(version, arg_required_else_help = true)]
+#[command(
+    version,
+    arg_required_else_help = true,
+    after_help = "Examples:\n  barbule fit fits/teal-peaks     fit a job that is there, and write its report\n  barbule new my-table.csv        begin with a table of your own\n  barbule models                  what can be fitted"
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,
@@ -55,7 +59,8 @@ pub(crate) fn main() -> ExitCode {
         // A reader that closes its end of a pipe has what it wanted.
         Err(error) if output::is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("barbule: {error:#}");
+            // Every error quotes its cause where that helps its reader.
+            eprintln!("barbule: {error}");
             ExitCode::from(2)
         }
     }

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use barbule::job;
+use barbule::report::write_file;
 use clap::Args;
 
 use super::Ending;
-use super::output::{print, write_file};
+use super::output::print;
 
 /// Write a job for a table: its columns, units and angles guessed, each guess marked for you to check.
 #[derive(Debug, Args)]
@@ -29,7 +30,7 @@ impl New {
             bail!("{} is there already; choose another name with --out, or move it away", path.display());
         }
         let draft = job::draft(&self.table, &path)?;
-        write_file(&path, &draft)?;
+        write_file(&path, draft.as_bytes())?;
         print(&format!("Wrote {0}. Look at the lines marked `guess`, then run: barbule check {0}", path.display()))?;
         Ok(Ending::Done)
     }

@@ -1,6 +1,6 @@
-//! Writing to standard output and to files.
+//! Writing to standard output, and what comes before and after writing files.
 
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -11,17 +11,13 @@ pub(super) fn print(text: &str) -> Result<()> {
     Ok(())
 }
 
-/// Writes a file under a temporary name and renames it, so that a killed run leaves the old file or the new one.
-pub(super) fn write_file(path: &Path, contents: &str) -> Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let write = || -> io::Result<()> {
-        std::fs::create_dir_all(folder)?;
-        let mut file = tempfile::NamedTempFile::new_in(folder)?;
-        file.write_all(contents.as_bytes())?;
-        file.persist(path)?;
-        Ok(())
-    };
-    write().with_context(|| format!("{} cannot be written; choose another place or make room", path.display()))
+/// Refuses a folder that cannot be written to before hours go into what is to be written. Leaves no trace.
+pub(super) fn check_writable(folder: &Path) -> Result<()> {
+    let absolute = std::path::absolute(folder)?;
+    let there = absolute.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(Path::new("/"));
+    let probe =
+        if there.is_dir() { tempfile::tempfile_in(there).map(|_| ()) } else { Err(ErrorKind::NotADirectory.into()) };
+    probe.with_context(|| format!("{} cannot be written to; choose another folder with --out", folder.display()))
 }
 
 /// Whether an error is only the other end of a pipe being closed.
@@ -29,5 +25,5 @@ pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error
         .chain()
         .filter_map(|cause| cause.downcast_ref::<io::Error>())
-        .any(|cause| cause.kind() == io::ErrorKind::BrokenPipe)
+        .any(|cause| cause.kind() == ErrorKind::BrokenPipe)
 }

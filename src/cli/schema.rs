@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use barbule::job;
+use barbule::report::write_file;
 use clap::Args;
 
 use super::Ending;
-use super::output::{print, write_file};
+use super::output::print;
 
 /// Write the JSON Schemas of every file that Barbule reads or writes.
 #[derive(Debug, Args)]
@@ -22,7 +23,7 @@ impl Schema {
     pub(super) fn run(self) -> Result<Ending> {
         for (name, schema) in job::schemas() {
             let path = self.out.join(name);
-            write_file(&path, &schema)?;
+            write_file(&path, schema.as_bytes())?;
             print(&path.display().to_string())?;
         }
         Ok(Ending::Done)

@@ -1,13 +1,14 @@
 //! `barbule simulate JOB`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use barbule::job::{self, Job, Noise};
+use barbule::report::write_file;
 use clap::Args;
 
 use super::Ending;
-use super::output::{print, write_file};
+use super::output::print;
 
 /// Run a job's model forward: its readings at the geometry of the job's table.
 ///
@@ -24,10 +25,10 @@ pub(super) struct Simulate {
     #[arg(long, value_name = "NAME=VALUE", value_parser = setting)]
     set: Vec<(String, f64)>,
     /// Standard deviation of the noise as a share of each reading.
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     noise: f64,
     /// Seed of the noise.
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     seed: u64,
     /// File to write [default: standard output].
     #[arg(long)]
@@ -40,15 +41,26 @@ impl Simulate {
         let noise = Noise { share: self.noise, seed: self.seed };
         let table = job::simulate(&job, &self.set.into_iter().collect(), noise)?;
         match self.out {
-            Some(path) => write_file(&path, &table)?,
+            Some(path) if is_input(&path, &job) => {
+                bail!("--out: {} is what this job reads; choose another name", path.display())
+            }
+            Some(path) => write_file(&path, table.as_bytes())?,
             None => print(table.trim_end())?,
         }
         Ok(Ending::Done)
     }
 }
 
+/// Whether writing there would destroy the job or its table.
+fn is_input(path: &Path, job: &Job) -> bool {
+    let data = job.file.data.file.as_ref().map(|file| job.folder.join(file));
+    let inputs = std::iter::once(job.path.clone()).chain(data);
+    path.canonicalize()
+        .is_ok_and(|path| inputs.filter_map(|input| input.canonicalize().ok()).any(|input| input == path))
+}
+
 fn setting(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, as film.thickness_nm=330")?;
     let value = value.trim().parse().map_err(|_| format!("`{value}` is not a number"))?;
     Ok((name.trim().to_owned(), value))
 }

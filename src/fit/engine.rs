@@ -37,9 +37,7 @@ pub fn fit(
     settings: &Settings,
     control: &Control<'_>,
 ) -> Result<Fit, FitError> {
-    check_settings(settings)?;
-    let parameters = residuals.parameters();
-    let mapping = Mapping::new(parameters, assignments)?;
+    let mapping = checked(residuals, assignments, settings)?;
     let counters = Counters::default();
     let mut objective = Objective::new(residuals, &mapping, assignments, settings, control, &counters);
     enough_readings(&objective)?;
@@ -61,6 +59,20 @@ pub fn fit(
     }
     settle(&mut objective, &pattern, settings, &mut survey);
     Ok(summarise(&objective, assignments, settings, survey))
+}
+
+/// Finds the mistakes that can be found before anything is computed, as [`fit`] does when it begins.
+///
+/// # Errors
+///
+/// As of [`fit`], without those that need the model: too few readings, and no start that is finite.
+pub fn check(residuals: &dyn Residuals, assignments: &[Assignment], settings: &Settings) -> Result<(), FitError> {
+    checked(residuals, assignments, settings).map(|_| ())
+}
+
+fn checked(residuals: &dyn Residuals, assignments: &[Assignment], settings: &Settings) -> Result<Mapping, FitError> {
+    check_settings(settings)?;
+    Mapping::new(residuals.parameters(), assignments)
 }
 
 /// Brings the minima that can matter to the last digit, and differentiates them anew.

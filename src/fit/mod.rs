@@ -26,7 +26,7 @@ mod warnings;
 
 pub use assignment::{Assignment, Prior, Role};
 pub use control::Control;
-pub use engine::fit;
+pub use engine::{check, fit};
 pub use error::FitError;
 pub use expression::{ExpressionError, parse_tie};
 pub use outcome::{

@@ -81,18 +81,22 @@ fn by_swarm(objective: &Objective<'_>, pattern: &Pattern, settings: &Settings) -
     Survey { minima: distinct(objective, pattern, &bounds, ends), profiles: Vec::new(), starts: starts.len() }
 }
 
-/// Runs every start in parallel, with progress; in the order of the starts, without those that failed.
+/// Runs every start in parallel, with progress; in the order of the starts, without those that failed. Once interrupted
+/// it begins no more of them, except the first, so that there is a best so far even then.
 fn each<F>(objective: &Objective<'_>, starts: &[Vec<f64>], run: F) -> Vec<LocalFit>
 where
     F: Fn(&Vec<f64>) -> Option<LocalFit> + Sync,
 {
     let done = AtomicUsize::new(0);
-    let watched = |start: &Vec<f64>| {
+    let watched = |(index, start): (usize, &Vec<f64>)| {
+        if index > 0 && objective.control.interrupted() {
+            return None;
+        }
         let end = run(start);
         (objective.control.progress)(1 + done.fetch_add(1, Ordering::Relaxed), starts.len());
         end
     };
-    starts.par_iter().map(watched).collect::<Vec<_>>().into_iter().flatten().collect()
+    starts.par_iter().enumerate().map(watched).collect::<Vec<_>>().into_iter().flatten().collect()
 }
 
 /// Profile, screening on the coarse problem, and the full problem for what is left.

@@ -10,10 +10,10 @@ use super::peaks::PeaksProblem;
 use super::predict::Values;
 use super::spectra::{SpectraProblem, SpectraSetup};
 use super::{InputFile, JobError, JobFile, synthetic};
-use crate::fit::{Assignment, Control, Fit, Loss, Prior, Residuals, Role, fit, parse_tie};
+use crate::fit::{Assignment, Control, Fit, FitError, Loss, Prior, Residuals, Role, check, fit, parse_tie};
 use crate::measure::{
     Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, TableText,
-    ThinFilmLaw, read_table,
+    ThinFilmLaw, nearest, read_table,
 };
 use crate::parameter::{Parameter, Spread};
 
@@ -182,6 +182,11 @@ impl CheckedCase {
             return Err(JobError::key("fit.loss", problem));
         }
         let assignments = assign(residuals.parameters(), &file.parameters, &file.instrument, &gains)?;
+        // With nothing free there is nothing to fit, but a model to look at.
+        match check(residuals, &assignments, &file.fit) {
+            Ok(()) | Err(FitError::NothingFree) => {}
+            Err(error) => return Err(error.into()),
+        }
         Ok(Self { file, comparison, assignments })
     }
 }
@@ -305,8 +310,10 @@ pub(super) fn assign(
     let index_of = |name: &str| declared.iter().position(|parameter| parameter.name == name);
     for name in typed.keys() {
         if index_of(name).is_none() {
-            let known: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
-            let problem = format!("this model and instrument have no such parameter; they have {}", known.join(", "));
+            let known: Vec<String> = declared.iter().map(|parameter| parameter.name.clone()).collect();
+            let meant = nearest(name, &known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+            let known = known.join(", ");
+            let problem = format!("this model and instrument have no such parameter; they have {known}{meant}");
             return Err(JobError::key(format!("parameters.\"{name}\""), problem));
         }
     }

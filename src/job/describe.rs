@@ -6,6 +6,7 @@ use super::case::Comparison;
 use super::model_note::model_note;
 use super::{Job, JobError};
 use crate::fit::{Assignment, Role};
+use crate::number::plain;
 use crate::parameter::Parameter;
 
 /// Checks a job and its data, and says what a fit would do.
@@ -39,10 +40,12 @@ pub fn describe(job: &Job) -> Result<String, JobError> {
 }
 
 fn role_text(parameter: &Parameter, assignment: &Assignment, all: &[Parameter]) -> String {
-    let role = match &assignment.role {
-        Role::Free { start, lower, upper } => format!("free from {lower} to {upper}, first start {start}"),
-        Role::Fixed(value) => format!("fixed at {value}"),
-        Role::Tied { constant, terms } => {
+    let role = match assignment.role {
+        Role::Free { start, lower, upper } => {
+            format!("free from {} to {}, first start {}", plain(lower), plain(upper), plain(start))
+        }
+        Role::Fixed(value) => format!("fixed at {}", plain(value)),
+        Role::Tied { constant, ref terms } => {
             let terms = terms.iter().map(|(index, factor)| format!("{factor} × {}", all[*index].name));
             let sum: Vec<String> = std::iter::once(constant.to_string()).chain(terms).collect();
             format!("tied: {}", sum.join(" + "))

@@ -20,12 +20,30 @@ pub enum JobError {
         reason: String,
     },
     /// The text is not a job: bad TOML, an unknown key, a value of the wrong kind.
-    #[error("{}: {message}", .path.display())]
+    #[error("{}{}: {message}", .path.display(), at_line(*.line))]
     Syntax {
         /// The job file.
         path: PathBuf,
-        /// Line, key, what was found and what was expected.
+        /// The line, where the message does not show it itself.
+        line: Option<usize>,
+        /// Key, what was found and what was expected.
         message: String,
+    },
+    /// Another error, with where in the job it lies.
+    #[error("{place}: {error}")]
+    Placed {
+        /// File, line and case.
+        place: String,
+        /// What is wrong there.
+        error: Box<JobError>,
+    },
+    /// An option of the command line whose value makes no sense for this job.
+    #[error("{option}: {problem}")]
+    Option {
+        /// The option: `--set`.
+        option: &'static str,
+        /// What was found, what was expected, and how to mend it.
+        problem: String,
     },
     /// A key whose value makes no sense.
     #[error("{key}: {problem}")]
@@ -42,8 +60,13 @@ pub enum JobError {
     #[error("model: {0}")]
     Model(#[from] ModelError),
     /// The fit could not begin.
-    #[error("parameters: {0}")]
+    #[error(transparent)]
     Fit(#[from] FitError),
+}
+
+/// `, line 3` where it is known.
+pub(super) fn at_line(line: Option<usize>) -> String {
+    line.map_or_else(String::new, |line| format!(", line {line}"))
 }
 
 impl JobError {

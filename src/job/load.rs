@@ -1,18 +1,23 @@
 //! From a path to a parsed job.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use sha2::{Digest, Sha256};
 
 use super::case::{CheckedCase, read_data};
-use super::{InputFile, JobError, JobFile};
+use super::error::at_line;
+use super::syntax::{keys_of, line_of, parse};
+use super::{AlternativeFile, InputFile, JobError, JobFile};
+use crate::fit::FitError;
 
 /// A parsed job and where it came from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Job {
     /// Name: the folder's, or the file's without its ending.
     pub name: String,
+    /// The job file, or the name of a job that came as text.
+    pub path: PathBuf,
     /// Folder that relative paths count from.
     pub folder: PathBuf,
     /// The file as parsed.
@@ -31,40 +36,81 @@ impl Job {
     pub fn read(path: &Path) -> Result<Self, JobError> {
         let unreadable = |reason: String| JobError::Unreadable { path: path.to_owned(), reason };
         let file_path = if path.is_dir() { path.join("job.toml") } else { path.to_owned() };
-        let size = fs::metadata(&file_path).map_err(|error| unreadable(error.to_string()))?.len();
-        if size > LARGEST_JOB_BYTES {
-            return Err(unreadable(format!("it has {size} bytes, and a job has a few thousand")));
+        let refused = |error: io::Error| {
+            unreadable(match error.kind() {
+                io::ErrorKind::NotFound if path.is_dir() => "this folder has no job.toml".into(),
+                io::ErrorKind::NotFound => "there is no such file".into(),
+                _ => error.to_string(),
+            })
+        };
+        let about = fs::metadata(&file_path).map_err(refused)?;
+        if !about.is_file() {
+            return Err(unreadable("found a device where a file was expected".into()));
         }
-        let bytes = fs::read(&file_path).map_err(|error| unreadable(error.to_string()))?;
+        if about.len() > LARGEST_JOB_BYTES {
+            return Err(unreadable(format!("it has {} bytes, and a job has a few thousand", about.len())));
+        }
+        let bytes = fs::read(&file_path).map_err(refused)?;
         let input = input_file(&file_path, &bytes);
         let text = String::from_utf8(bytes).map_err(|_| unreadable("it is not UTF-8 text".into()))?;
         let folder = file_path.parent().map_or_else(|| PathBuf::from("."), Path::to_owned);
         let named =
             if path.is_dir() { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() };
         let name = named.file_stem().map_or_else(|| "job".into(), |stem| stem.to_string_lossy().into_owned());
-        let file = parse(&text).map_err(|message| JobError::Syntax { path: file_path, message })?;
-        Ok(Self { name, folder, file, text, inputs: vec![input] })
+        let file = parse(&text, &file_path)?;
+        Ok(Self { name, path: file_path, folder, file, text, inputs: vec![input] })
     }
 
     /// A job from its text, with paths that count from `folder`.
     pub fn from_text(name: &str, text: &str, folder: &Path) -> Result<Self, JobError> {
-        let file = parse(text).map_err(|message| JobError::Syntax { path: PathBuf::from(name), message })?;
-        let (name, text) = (name.to_owned(), text.to_owned());
-        Ok(Self { name, folder: folder.to_owned(), file, text, inputs: Vec::new() })
+        let file = parse(text, Path::new(name))?;
+        let (name, path, text) = (name.to_owned(), PathBuf::from(name), text.to_owned());
+        Ok(Self { name, path, folder: folder.to_owned(), file, text, inputs: Vec::new() })
     }
 
     /// Every case, its readings read or made and checked against its model, and the files that they came from.
     pub fn cases(&self) -> Result<(Vec<CheckedCase>, Vec<InputFile>), JobError> {
         let mut inputs = self.inputs.clone();
         let mut cases = Vec::new();
-        for file in self.file.cases() {
-            let (table, input) = read_data(&file.data, &self.folder, &self.file)?;
+        for (index, file) in self.file.cases().into_iter().enumerate() {
+            let (table, input) = read_data(&file.data, &self.folder, &self.file).map_err(|e| self.placed(e, index))?;
             if let Some(input) = input.filter(|input| !inputs.contains(input)) {
                 inputs.push(input);
             }
-            cases.push(CheckedCase::new(file, table)?);
+            cases.push(CheckedCase::new(file, table).map_err(|error| self.placed(error, index))?);
         }
         Ok((cases, inputs))
+    }
+
+    /// The error with its file, line and case, as far as it does not name them itself.
+    fn placed(&self, error: JobError, case: usize) -> JobError {
+        let keys = match &error {
+            JobError::Key { key, .. } => keys_of(key),
+            JobError::Model(_) => vec!["model".to_owned()],
+            JobError::Fit(FitError::Setting { name, .. }) => vec!["fit".to_owned(), (*name).to_owned()],
+            JobError::Fit(FitError::TiedToTied { name, .. } | FitError::TieOutOfRange { name, .. }) => {
+                vec!["parameters".to_owned(), name.clone()]
+            }
+            JobError::Fit(_) => vec!["parameters".to_owned()],
+            _ => return error,
+        };
+        // An alternative has some keys of its own; the others are the main case's.
+        let own: Vec<String> = case
+            .checked_sub(1)
+            .map(|other| ["alternative".to_owned(), other.to_string()].into_iter().chain(keys.clone()).collect())
+            .unwrap_or_default();
+        let owns = |settings: &AlternativeFile| match keys.first().map(String::as_str) {
+            Some("model") => settings.model.is_some(),
+            Some("parameters") => settings.parameters.is_some(),
+            Some("instrument") => settings.instrument.is_some(),
+            Some("fit") => settings.fit.is_some(),
+            _ => false,
+        };
+        let other = case.checked_sub(1).and_then(|other| self.file.alternative.get(other));
+        let keys = if other.is_some_and(owns) { &own } else { &keys };
+        let line = at_line(line_of(&self.text, keys));
+        let case = other.map_or_else(String::new, |other| format!(", case \"{}\"", other.case));
+        JobError::Placed { place: format!("{}{line}{case}", self.path.display()), error: Box::new(error) }
     }
 
     /// Uses another seed for the start points of every case.
@@ -74,18 +120,6 @@ impl Job {
             settings.seed = seed;
         }
     }
-}
-
-/// Parses a job, or says in which line and key it goes wrong.
-fn parse(text: &str) -> Result<JobFile, String> {
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let table: toml::Table = toml::from_str(text).map_err(|error| error.to_string())?;
-    serde_path_to_error::deserialize(toml::Value::Table(table)).map_err(|error| {
-        let path = error.path().to_string();
-        let message = error.into_inner().to_string();
-        let message = message.trim();
-        if path == "." { message.to_owned() } else { format!("{path}: {message}") }
-    })
 }
 
 /// Name, hash and size of a file that was read.

@@ -18,6 +18,7 @@ mod schema;
 mod simulate;
 mod spectra;
 mod support;
+mod syntax;
 mod synthetic;
 
 pub use case::CheckedCase;

@@ -5,7 +5,7 @@ use super::predict::Values;
 use super::synthetic::{add_noise, forward};
 use super::{Job, JobError};
 use crate::fit::Role;
-use crate::measure::{GonioTable, Quantity};
+use crate::measure::{GonioTable, Quantity, nearest};
 
 /// Noise to add to simulated readings.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,14 +22,21 @@ pub struct Noise {
 pub fn simulate(job: &Job, set: &Values, noise: Noise) -> Result<String, JobError> {
     if !(0.0..1.0).contains(&noise.share) {
         let problem = format!("found {}; expected a share of each reading from 0 to below 1", noise.share);
-        return Err(JobError::key("--noise", problem));
+        return Err(JobError::Option { option: "--noise", problem });
     }
     let case = job.cases()?.0.swap_remove(0);
     let declared = case.residuals().parameters();
-    if let Some(name) = set.keys().find(|name| !declared.iter().any(|parameter| parameter.name == **name)) {
-        let known: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
-        let problem = format!("there is no parameter `{name}`; this job has {}", known.join(", "));
-        return Err(JobError::key("--set", problem));
+    let refused = |problem: String| Err(JobError::Option { option: "--set", problem });
+    for (name, value) in set {
+        let Some(parameter) = declared.iter().find(|parameter| parameter.name == *name) else {
+            let known: Vec<String> = declared.iter().map(|parameter| parameter.name.clone()).collect();
+            let meant = nearest(name, &known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+            return refused(format!("there is no parameter `{name}`; this job has {}{meant}", known.join(", ")));
+        };
+        let (lower, upper) = (parameter.lower, parameter.upper);
+        if !(lower..=upper).contains(value) {
+            return refused(format!("found {name} = {value}; expected a value from {lower} to {upper}"));
+        }
     }
     let start = |role: &Role| match role {
         Role::Free { start, .. } => *start,

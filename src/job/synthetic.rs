@@ -55,7 +55,9 @@ pub(super) fn readings(recipe: &SyntheticFile, file: &JobFile) -> Result<GonioTa
         .collect();
     let mut table = GonioTable { quantity: recipe.quantity, spectra };
     let exact = forward(file, &table, &recipe.truth).map_err(|error| match error {
-        JobError::Key { key, problem } => JobError::key(format!("data.synthetic.{key}"), problem),
+        JobError::Key { key, problem } if key.starts_with("truth") => {
+            JobError::key(format!("data.synthetic.{key}"), problem)
+        }
         other => other,
     })?;
     for (spectrum, values) in table.spectra.iter_mut().zip(exact) {

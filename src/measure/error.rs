@@ -59,7 +59,7 @@ impl fmt::Display for Place {
 pub enum TableProblem {
     // The file as bytes.
     /// No such file.
-    #[error("there is no such file; correct the path, which counts from the job file's folder")]
+    #[error("there is no such file; correct the path (in a job it counts from the job file's folder)")]
     NotThere,
     /// The system would not let us read it.
     #[error("it cannot be read ({0}); check that the file may be read and its disk is there")]

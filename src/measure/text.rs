@@ -294,7 +294,7 @@ fn line_of(before: &[u8]) -> u64 {
 }
 
 /// The name that differs least from the wanted one, if it differs little: letters' case, a slip, or a part left out.
-fn nearest(wanted: &str, names: &[String]) -> Option<String> {
+pub(crate) fn nearest(wanted: &str, names: &[String]) -> Option<String> {
     let wanted = wanted.to_lowercase();
     let score = |name: &String| {
         let name = name.to_lowercase();

@@ -32,11 +32,13 @@ use crate::job::{Case, Outcome};
 use chart::Figure;
 use plots::Place;
 
+pub use files::write as write_file;
+
 /// Why a report could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// A file or folder could not be written.
-    #[error("cannot write {}: {source}. Check that the folder may be written to and that the disk has room.", path.display())]
+    #[error("cannot write {}: {}. Check that the folder may be written to and that the disk has room.", path.display(), files::reason(source))]
     Write {
         /// The file or folder.
         path: PathBuf,

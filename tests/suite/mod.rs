@@ -2,12 +2,15 @@
 
 mod coated_base;
 mod colour;
+mod command_line;
 mod coverage;
 mod cylinder;
 mod data;
+mod desk;
 mod directions;
 mod engine;
 mod granier;
+mod jobs;
 mod microfacet;
 mod nist;
 mod optics;
@@ -17,5 +20,6 @@ mod paints;
 mod pigment;
 mod report;
 mod rough_plastic;
+mod schema;
 mod tables;
 mod twins;
