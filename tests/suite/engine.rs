@@ -62,7 +62,7 @@ fn free(start: f64, lower: f64, upper: f64) -> Assignment {
 
 fn run(residuals: &dyn Residuals, assignments: &[Assignment], settings: &Settings) -> Result<Fit, FitError> {
     let interrupt = AtomicBool::new(false);
-    fit(residuals, assignments, settings, &Control { interrupt: &interrupt, progress: &|_, _| {} })
+    fit(residuals, assignments, settings, &Control { interrupt: &interrupt, progress: &|_, _| {}, checkpoint: None })
 }
 
 /// A single film between air and a darker substrate at normal to 60°: the cosine fringes of a real one.
@@ -71,6 +71,7 @@ struct Film {
     /// cos θ inside and λ of each reading.
     geometry: Vec<(f64, f64)>,
     readings: Vec<f64>,
+    coarse: Option<Box<Film>>,
 }
 
 impl Film {
@@ -97,7 +98,14 @@ impl Film {
                 readings.push(value * (1.0 + 0.01 * normal(&mut random)));
             }
         }
-        Self { parameters, geometry, readings }
+        let chosen: Vec<usize> = (0..readings.len()).filter(|k| k.is_multiple_of(13)).collect();
+        let coarse = Self {
+            parameters: parameters.clone(),
+            geometry: chosen.iter().map(|&k| geometry[k]).collect(),
+            readings: chosen.iter().map(|&k| readings[k]).collect(),
+            coarse: None,
+        };
+        Self { parameters, geometry, readings, coarse: Some(Box::new(coarse)) }
     }
 }
 
@@ -122,14 +130,8 @@ impl Residuals for Film {
         }
     }
 
-    fn coarse(&self) -> Option<Box<dyn Residuals + '_>> {
-        let pick = |k: &usize| k.is_multiple_of(13);
-        let chosen: Vec<usize> = (0..self.readings.len()).filter(pick).collect();
-        Some(Box::new(Self {
-            parameters: self.parameters.clone(),
-            geometry: chosen.iter().map(|&k| self.geometry[k]).collect(),
-            readings: chosen.iter().map(|&k| self.readings[k]).collect(),
-        }))
+    fn coarse(&self) -> Option<&dyn Residuals> {
+        self.coarse.as_deref().map(|film| film as &dyn Residuals)
     }
 
     fn sigma_known(&self) -> bool {
@@ -503,7 +505,7 @@ fn an_interrupt_keeps_the_best_so_far() {
     use barbule::fit::Solver::{LBfgs, LeastSquares, NelderMead, ParticleSwarm};
     for solver in [LeastSquares, LBfgs, NelderMead, ParticleSwarm] {
         let interrupt = AtomicBool::new(true);
-        let control = Control { interrupt: &interrupt, progress: &|_, _| {} };
+        let control = Control { interrupt: &interrupt, progress: &|_, _| {}, checkpoint: None };
         let settings = Settings { solver, ..Settings::default() };
         let assignments = [free(1.0, -9.0, 9.0), free(1.0, -9.0, 9.0)];
         let result = fit(&line(&x, &y, 0.5, true), &assignments, &settings, &control).unwrap();
