@@ -260,3 +260,20 @@ fn fits_in_one_folder_keep_apart_and_leave_nothing() {
     assert_eq!(fs::read_dir(parent.path().join("quick")).unwrap().count(), 0);
     checkpoints.remove().unwrap();
 }
+
+#[test]
+fn the_command_writes_the_same_result_and_removes_its_checkpoint() {
+    let folder = tempfile::tempdir().unwrap();
+    let job = Path::new(env!("CARGO_MANIFEST_DIR")).join("fits/teal-peaks");
+    let result = |out: &str, extra: &[&str]| {
+        let out = folder.path().join(out);
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_barbule"));
+        let end = command.arg("fit").arg(&job).arg("--out").arg(&out).args(extra).output().unwrap();
+        assert!(end.status.success(), "{}", String::from_utf8_lossy(&end.stderr));
+        fs::read_to_string(out.join("result.json")).unwrap()
+    };
+    let checkpoint = folder.path().join("checkpoint");
+    let plain = result("plain", &[]);
+    assert_eq!(result("saved", &["--checkpoint", checkpoint.to_str().unwrap()]), plain);
+    assert!(!checkpoint.exists(), "nothing is left");
+}
