@@ -35,3 +35,10 @@ pub struct Parameter {
     /// One line that says what it means.
     pub text: String,
 }
+
+impl Parameter {
+    /// Whether a value is a number inside the bounds.
+    pub fn allows(&self, value: f64) -> bool {
+        (self.lower..=self.upper).contains(&value)
+    }
+}

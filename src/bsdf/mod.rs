@@ -5,13 +5,26 @@
 //! wavelengths alone is done when the model is made, work that depends on the parameters when it is bound, and only
 //! the rest for each pair of directions. The loop over channels is the innermost one and runs over contiguous memory.
 
+mod channel_parameters;
 mod coated_base;
+mod granier;
+mod interference;
+mod iridescent_plastic;
+mod lambertian;
+mod microfacet;
 mod model_error;
+mod rough_plastic;
 
 pub use coated_base::{
     CoatedBase, Description, Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice, OwnMaterial,
 };
+pub use granier::{GranierHeidrich, GranierHeidrichDesign, NormalSource, Site, normal_from_rgb};
+pub use interference::Interference;
+pub use iridescent_plastic::{IridescentPlastic, IridescentPlasticDesign};
+pub use lambertian::{Lambertian, LambertianDesign};
+pub use microfacet::{Distribution, MicrofacetDesign, MicrofacetInterface};
 pub use model_error::ModelError;
+pub use rough_plastic::{InternalReflection, RoughPlastic, RoughPlasticDesign};
 
 use nalgebra::Vector3;
 
@@ -32,6 +45,28 @@ pub trait Model: Send + Sync + std::fmt::Debug {
     ///
     /// Values inside the declared bounds always give finite results.
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_>;
+
+    /// Whether these values can be bound: one for each parameter, each a number inside its bounds.
+    ///
+    /// # Errors
+    /// A sentence that names the first parameter whose value is wrong, what was found and what was expected.
+    fn check(&self, values: &[f64]) -> Result<(), ModelError> {
+        let parameters = self.parameters();
+        if values.len() != parameters.len() {
+            return Err(ModelError::WrongCount { found: values.len(), expected: parameters.len() });
+        }
+        match parameters.iter().zip(values).find(|(parameter, value)| !parameter.allows(**value)) {
+            Some((parameter, &found)) => Err(ModelError::BadValue {
+                name: parameter.name.clone(),
+                found,
+                lower: parameter.lower,
+                upper: parameter.upper,
+                unit: if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) },
+                text: parameter.text.clone(),
+            }),
+            None => Ok(()),
+        }
+    }
 }
 
 /// A scattering function, ready to be evaluated.
@@ -39,4 +74,19 @@ pub trait Bsdf: Send + Sync {
     /// Writes the scattering function in 1/sr, without the cosine, one value a channel, for light from `incoming`
     /// seen from `outgoing`. Directions below the surface (z < 0) are legal; a model that only reflects gives 0 there.
     fn evaluate(&self, incoming: &Direction, outgoing: &Direction, values: &mut [f64]);
+
+    /// [`Bsdf::evaluate`] for many pairs of directions at a time: all channels of the first pair, then of the second.
+    ///
+    /// For renderers and sweeps; a model that is faster over many pairs says how much its values may then differ.
+    ///
+    /// # Panics
+    /// If the lengths do not fit each other: that is the caller's slip, not a user's.
+    fn evaluate_many(&self, incoming: &[Direction], outgoing: &[Direction], values: &mut [f64]) {
+        assert_eq!(incoming.len(), outgoing.len(), "directions come in pairs");
+        let channels = (values.len() / incoming.len().max(1)).max(1);
+        assert_eq!(values.len(), incoming.len() * channels, "one value a pair and channel");
+        for ((incoming, outgoing), values) in incoming.iter().zip(outgoing).zip(values.chunks_exact_mut(channels)) {
+            self.evaluate(incoming, outgoing, values);
+        }
+    }
 }

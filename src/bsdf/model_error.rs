@@ -20,6 +20,49 @@ pub enum ModelError {
         /// Allowed values, with their unit.
         expected: &'static str,
     },
+    /// A number of values that is not the number of parameters.
+    #[error("the model has {expected} parameters, found {found} values; give one for each")]
+    WrongCount {
+        /// Number of values found.
+        found: usize,
+        /// Number of parameters.
+        expected: usize,
+    },
+    /// A parameter's value outside its bounds, or no number.
+    #[error("`{name}` is {found}; expected a number from {lower} to {upper}{unit}: {text}")]
+    BadValue {
+        /// The parameter.
+        name: String,
+        /// Value found.
+        found: f64,
+        /// Smallest value allowed.
+        lower: f64,
+        /// Largest value allowed.
+        upper: f64,
+        /// Unit with a space before it, or nothing.
+        unit: String,
+        /// What the parameter means.
+        text: String,
+    },
+    /// A parameter that has one value for all channels, or does not exist.
+    #[error("`per_channel` names {name:?}; expected some of: {expected}")]
+    NotPerChannel {
+        /// Name found.
+        name: String,
+        /// Names that could stand there.
+        expected: String,
+    },
+    /// A vector that gives no direction.
+    #[error(
+        "{what} is [{}, {}, {}]; expected a vector that points out of the surface (its third number above 0), of any length",
+        found[0], found[1], found[2]
+    )]
+    NotADirection {
+        /// The key.
+        what: &'static str,
+        /// Vector found.
+        found: [f64; 3],
+    },
     /// A name that cannot be used.
     #[error(
         "{name:?} cannot be the name of a {what}; expected a letter and then letters, digits or underscores, since parameters are named after it"

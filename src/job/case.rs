@@ -10,8 +10,6 @@ use super::peaks::PeaksProblem;
 use super::predict::Values;
 use super::spectra::{SpectraProblem, SpectraSetup};
 use super::{InputFile, JobError, JobFile, synthetic};
-use crate::bsdf::Model;
-use crate::bsdf::{CoatedBase, Design};
 use crate::fit::{Assignment, Control, Fit, Loss, Prior, Residuals, Role, fit, parse_tie};
 use crate::measure::{
     Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, TableText,
@@ -190,17 +188,13 @@ impl CheckedCase {
 
 /// The problem of the fitted spectra.
 pub(super) fn spectra_problem(file: &JobFile, table: &GonioTable, fitted: &[bool]) -> Result<SpectraProblem, JobError> {
-    let ModelFile::CoatedBase(design) = &file.model else {
-        let problem = "`thin-film-law` predicts peak wavelengths, and the table holds spectra; use `coated-base`";
-        return Err(JobError::key("model.kind", problem));
-    };
     let spectra = seen_spectra(table, fitted);
     SpectraProblem::new(&SpectraSetup {
-        make_model: &|wavelengths_nm| coated_base(design, wavelengths_nm),
+        make_model: &|wavelengths_nm| file.model.scattering(wavelengths_nm),
         quantity: table.quantity,
         spectra: &spectra,
         instrument: &file.instrument,
-        rings: cone_rings(file),
+        rings: cone_rings(file)?,
     })
 }
 
@@ -209,27 +203,40 @@ fn seen_spectra(table: &GonioTable, fitted: &[bool]) -> Vec<Spectrum> {
     seen.map(|(spectrum, _)| spectrum.clone()).collect()
 }
 
-/// Makes the model of a design.
-pub(super) fn coated_base(design: &Design, wavelengths_nm: &[f64]) -> Result<Box<dyn Model>, JobError> {
-    Ok(Box::new(CoatedBase::new(design, wavelengths_nm)?))
-}
+/// Most rings of directions in a cone; a reading then costs up to (4 · 12²)² evaluations.
+const MOST_RINGS: usize = 12;
 
-/// Rings of directions in an open cone: enough that the ring spacing resolves the narrowest lobe the fit may try.
+/// Rings of directions in an open cone: enough to resolve the narrowest lobe that the fit may try.
 ///
-/// A Beckmann lobe of roughness α falls to 1/e at a tilt of the half-vector of about α, and a ray's change by δ tilts
-/// the half-vector by δ/2; Gauss–Legendre with n rings across a half-angle a is converged to 1e-3 once n ≥ 2 + a/α
-/// (measured: see the test of this function).
-fn cone_rings(file: &JobFile) -> usize {
+/// A Beckmann lobe of roughness α falls to 1/e at a tilt of the half-vector of about α, and a ray that turns by δ tilts the
+/// half-vector by δ/2. Gauss–Legendre with 3 + 2a/α rings across a half-angle a holds a reading to 1e-3; the test below
+/// measures it.
+fn cone_rings(file: &JobFile) -> Result<usize, JobError> {
     let widest_deg = file.instrument.light_half_angle_deg.max(file.instrument.viewer_half_angle_deg);
     let narrowest = match file.parameters.get("roughness") {
         Some(ParameterFile::Fixed(value)) => *value,
         Some(ParameterFile::Free(free)) => free.lower.unwrap_or(0.01),
-        _ => 0.1,
+        // A tie may go anywhere in the declared range; left out, the roughness has its default.
+        Some(ParameterFile::Tied(_)) => 0.01,
+        None => 0.1,
     };
-    let rings = 2.0 + widest_deg.to_radians() / narrowest.max(1e-3);
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 2 and 12 by the clamp")]
-    let rings = rings.ceil().clamp(2.0, 12.0) as usize;
-    rings
+    let wanted = 3.0 + 2.0 * widest_deg.to_radians() / narrowest;
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive number, or caught")]
+    let rings = wanted.ceil() as usize;
+    if rings <= MOST_RINGS {
+        return Ok(rings);
+    }
+    let least = 2.0 * widest_deg.to_radians() / (as_f64(MOST_RINGS) - 3.0);
+    let problem = format!(
+        "cones of {widest_deg}° are too wide to be summed over a lobe as narrow as roughness {narrowest} allows; give \
+         `roughness` a lower bound (or value) of at least {least:.3}, or narrow the cones"
+    );
+    Err(JobError::key("instrument", problem))
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a small count")]
+fn as_f64(count: usize) -> f64 {
+    count as f64
 }
 
 fn check_instrument(instrument: &Instrument) -> Result<(), JobError> {
@@ -254,6 +261,14 @@ fn peak_model(model: &ModelFile, table: &PeakTable) -> Result<Box<dyn PeakModel>
     Ok(match model {
         ModelFile::ThinFilmLaw(design) => Box::new(ThinFilmLaw::new(design.clone(), shortest_nm)),
         ModelFile::CoatedBase(design) => Box::new(FilmPeaks::new(design, shortest_nm)?),
+        other => {
+            let problem = format!(
+                "`{}` has no peaks of interference, and the table holds peak wavelengths; use `thin-film-law` or \
+                 `coated-base`",
+                other.card().kind
+            );
+            return Err(JobError::key("model.kind", problem));
+        }
     })
 }
 
@@ -361,4 +376,55 @@ fn inside(parameter: &Parameter, value: f64) -> Result<(), String> {
     }
     let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
     Err(format!("found {value}; expected a value from {} to {}{unit}", parameter.lower, parameter.upper))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bsdf::{CoatedBase, Model};
+    use crate::measure::{Aperture, Quantity};
+
+    /// The bar is 1e-3 of the reading in mirror position, where a lobe is narrowest against its cones.
+    #[test]
+    fn rings_resolve_the_lobe() {
+        for (half_angle_deg, roughness) in
+            [(1.0, 0.02), (2.0, 0.01), (4.0, 0.05), (8.0, 0.05), (12.0, 0.1), (12.0, 0.5)]
+        {
+            let text = format!(
+                "title = \"cones\"\n[data]\n[instrument]\nlight_half_angle_deg = {half_angle_deg}\n\
+                 viewer_half_angle_deg = {half_angle_deg}\n[model]\nkind = \"coated-base\"\nsubstrate = \"keratin\"\n\
+                 [parameters]\nroughness = {roughness}\n"
+            );
+            let file: JobFile = toml::from_str(&text).unwrap();
+            let ModelFile::CoatedBase(design) = &file.model else { unreachable!("the text says so") };
+            let model = CoatedBase::new(design, &[550.0]).unwrap();
+            let values: Vec<f64> = model
+                .parameters()
+                .iter()
+                .map(|parameter| if parameter.name == "roughness" { roughness } else { parameter.default })
+                .collect();
+            let bsdf = model.bind(&values);
+            let reading = |rings: usize| {
+                let (mut scratch, mut reading) = ([0.0], [0.0]);
+                let geometry = Geometry::mirror(40.0);
+                Aperture::new(&geometry, &file.instrument, Quantity::Reflectance, rings).read(
+                    &*bsdf,
+                    &mut scratch,
+                    &mut reading,
+                );
+                reading[0]
+            };
+            let rings = cone_rings(&file).unwrap();
+            approx::assert_relative_eq!(reading(rings), reading(2 * rings), max_relative = 1e-3);
+        }
+    }
+
+    #[test]
+    fn a_lobe_that_cannot_be_resolved_is_refused() {
+        let text = "title = \"cones\"\n[data]\n[instrument]\nlight_half_angle_deg = 8\n[model]\n\
+                    kind = \"coated-base\"\nsubstrate = \"keratin\"\n[parameters]\nroughness = {}\n";
+        let file: JobFile = toml::from_str(text).unwrap();
+        let message = cone_rings(&file).unwrap_err().to_string();
+        assert!(message.contains("at least 0.031"), "{message}");
+    }
 }

@@ -6,7 +6,9 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use crate::bsdf::Design;
+use crate::bsdf::{
+    Design, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign, RoughPlasticDesign,
+};
 use crate::fit::Settings;
 use crate::measure::{Instrument, Quantity, TableLayout, ThinFilmLawDesign};
 
@@ -104,7 +106,17 @@ pub struct SyntheticFile {
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum ModelFile {
     /// A film, a stack or a plain interface inside a rough surface, over a diffuse base.
-    CoatedBase(Design),
+    CoatedBase(Box<Design>),
+    /// A rough dielectric interface that reflects and transmits.
+    Microfacet(MicrofacetDesign),
+    /// A rough dielectric coat over a diffuse base.
+    RoughPlastic(RoughPlasticDesign),
+    /// A rough plastic with a phase term in each channel, as the second thesis builds it.
+    IridescentPlastic(IridescentPlasticDesign),
+    /// A diffuse base under a thin clear film, after Granier and Heidrich.
+    GranierHeidrich(GranierHeidrichDesign),
+    /// A surface that is equally bright from everywhere.
+    Lambertian(LambertianDesign),
     /// The closed law of a single film's peak wavelengths. For peak tables only.
     ThinFilmLaw(ThinFilmLawDesign),
 }

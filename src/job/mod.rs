@@ -2,7 +2,6 @@
 
 mod answer;
 mod case;
-mod catalogue;
 mod describe;
 mod draft;
 mod error;
@@ -10,6 +9,7 @@ mod file;
 mod film_peaks;
 mod load;
 mod model_note;
+mod models;
 mod outcome;
 mod peaks;
 mod predict;
@@ -21,12 +21,12 @@ mod support;
 mod synthetic;
 
 pub use case::CheckedCase;
-pub use catalogue::{ModelEntry, models};
 pub use describe::describe;
 pub use draft::draft;
 pub use error::JobError;
 pub use file::{AlternativeFile, DataFile, FreeFile, JobFile, ModelFile, ParameterFile, PriorFile, SyntheticFile};
 pub use load::Job;
+pub use models::{ModelEntry, models};
 pub use outcome::{
     Case, CaseData, InputFile, ModelNote, Outcome, PeakFit, Prediction, SpectrumFit, Support, ThicknessOrder, Truth,
 };

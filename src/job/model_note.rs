@@ -5,10 +5,10 @@ use super::outcome::ModelNote;
 use super::{JobError, JobFile};
 use crate::bsdf::CoatedBase;
 use crate::measure::{Calibration, Instrument, PhaseJumps};
-use crate::optics::Reference;
 
 /// Sentences, materials and works to cite.
 pub(super) fn model_note(file: &JobFile) -> Result<ModelNote, JobError> {
+    let card = file.model.card();
     let note = match &file.model {
         ModelFile::ThinFilmLaw(design) => {
             let law = match design.phase_jumps {
@@ -16,30 +16,31 @@ pub(super) fn model_note(file: &JobFile) -> Result<ModelNote, JobError> {
                 PhaseJumps::One => "2 d √(n² − sin²θ) = (m − ½) λ, one reflection of the film turning the phase",
             };
             ModelNote {
-                kind: "thin-film-law".into(),
+                kind: card.kind.to_owned(),
                 text: format!(
                     "Peak wavelengths λ at inclination θ were fitted by the law of a single film of thickness d and \
                      constant refractive index n in air, {law} (Born & Wolf 1999). The law leaves out absorption, \
                      dispersion and the dependence of a reflection's phase on wavelength."
                 ),
                 materials: Vec::new(),
-                references: vec![Reference {
-                    key: "Born & Wolf 1999".into(),
-                    citation: "Born M, Wolf E (1999) Principles of Optics, 7th edition, section 7.6. Cambridge \
-                               University Press."
-                        .into(),
-                }],
+                references: card.references(),
             }
         }
         ModelFile::CoatedBase(design) => {
             let described = CoatedBase::new(design, &[500.0])?.describe();
             ModelNote {
-                kind: "coated-base".into(),
+                kind: card.kind.to_owned(),
                 text: described.text,
                 materials: described.materials,
                 references: described.references,
             }
         }
+        _ => ModelNote {
+            kind: card.kind.to_owned(),
+            text: card.text.to_owned(),
+            materials: Vec::new(),
+            references: card.references(),
+        },
     };
     let text = format!("{} {}", note.text, instrument_text(&file.instrument));
     Ok(ModelNote { text: text.trim().to_owned(), ..note })

@@ -120,11 +120,11 @@ fn predicted_spectra(file: &JobFile, table: &PeakTable, values: &[f64]) -> Resul
     let ModelFile::CoatedBase(design) = &file.model else { return Ok(Vec::new()) };
     let (shortest_nm, longest_nm) = extent(table.readings.iter().map(|reading| reading.wavelength_nm));
     let model = FilmPeaks::new(design, shortest_nm)?;
-    // An octave around the readings, every 2 nm: what a plot can show.
-    let first = (shortest_nm * 0.7 / 2.0).floor() * 2.0;
+    // An octave around the readings, every 4 nm: what a plot can show.
+    let first = (shortest_nm * 0.7 / 4.0).floor() * 4.0;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "wavelengths of peaks, some 1e3 nm")]
-    let count = ((longest_nm * 1.4 - first) / 2.0) as u32;
-    let wavelengths_nm: Vec<f64> = (0..=count).map(|step| first + 2.0 * f64::from(step)).collect();
+    let count = ((longest_nm * 1.4 - first) / 4.0) as u32;
+    let wavelengths_nm: Vec<f64> = (0..=count).map(|step| first + 4.0 * f64::from(step)).collect();
     let predictions = table.readings.iter().map(|reading| {
         let mut reflectance = vec![0.0; wavelengths_nm.len()];
         model.spectrum(values, &reading.geometry, &wavelengths_nm, &mut reflectance);

@@ -62,10 +62,11 @@ impl SpectraProblem {
     /// The full problem, with a coarse one inside it.
     pub(super) fn new(setup: &SpectraSetup) -> Result<Self, JobError> {
         let mut problem = Self::without_coarse(setup)?;
-        problem.coarse = coarse_spectra(setup.spectra)
-            .map(|spectra| Self::without_coarse(&SpectraSetup { spectra: &spectra, ..*setup }))
-            .transpose()?
-            .map(Box::new);
+        if let Some(spectra) = coarse_spectra(setup.spectra) {
+            let coarse = Self::without_coarse(&SpectraSetup { spectra: &spectra, ..*setup })?;
+            // A model with a parameter a channel has others on fewer channels.
+            problem.coarse = same_names(&coarse.parameters, &problem.parameters).then(|| Box::new(coarse));
+        }
         Ok(problem)
     }
 
@@ -86,6 +87,10 @@ impl SpectraProblem {
                         parameters = model.parameters().to_vec();
                         model_parameters = parameters.len();
                         parameters.extend(calibration_parameters(setup.instrument, setup.spectra));
+                    } else if !same_names(model.parameters(), &parameters[..model_parameters]) {
+                        let problem = "a parameter with one value a channel needs every spectrum at the same wavelengths; \
+                                       make them the same with `window_nm` and `stride`";
+                        return Err(JobError::key("model.per_channel", problem));
                     }
                     grids.push(grid);
                     groups.push(Group { model, band, items: Vec::new() });
@@ -145,9 +150,13 @@ impl SpectraProblem {
             scratch.resize(group.model.channel_count(), 0.0);
             channels.resize(group.model.channel_count(), 0.0);
             for item in &group.items {
-                item.aperture.read(&*bsdf, &mut scratch, &mut channels);
                 let readings = &mut rows[item.first_row..item.first_row + item.values.len()];
-                group.band.average(&channels, readings);
+                if group.band.is_sharp() {
+                    item.aperture.read(&*bsdf, &mut scratch, readings);
+                } else {
+                    item.aperture.read(&*bsdf, &mut scratch, &mut channels);
+                    group.band.average(&channels, readings);
+                }
                 finish(item, readings);
             }
         }
@@ -183,6 +192,10 @@ impl Residuals for SpectraProblem {
     fn sigma_known(&self) -> bool {
         self.sigma_known
     }
+}
+
+fn same_names(a: &[Parameter], b: &[Parameter]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.name == b.name)
 }
 
 fn gain_count(calibration: Calibration, spectra: usize) -> usize {

@@ -29,7 +29,7 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
         return Ok(None);
     }
     let with = &case.file;
-    let without = JobFile { model: ModelFile::CoatedBase(design.without_layers()), ..with.clone() };
+    let without = JobFile { model: ModelFile::CoatedBase(Box::new(design.without_layers())), ..with.clone() };
     let values = values_by_name(best);
     let thickness = free_thickness(best);
 
@@ -136,7 +136,7 @@ fn free_thickness(fit: &Fit) -> Option<String> {
     fit.free.iter().find(is_thickness).cloned()
 }
 
-/// λ_min/4n: half the way to the next order of interference at the shortest wavelength of the table.
+/// λ/4n at the shortest wavelength of the table: half the way to the next order of interference.
 fn quarter_order_nm(design: &Design, table: &GonioTable, values: &Values, name: &str) -> Result<f64, JobError> {
     let wavelengths = table.spectra.iter().filter_map(|spectrum| spectrum.wavelengths_nm.first());
     let shortest_nm = wavelengths.copied().fold(f64::INFINITY, f64::min);

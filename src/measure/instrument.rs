@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Geometry, Quantity};
 use crate::bsdf::{Bsdf, Direction};
+use crate::optics::gauss_legendre;
 
 /// The instrument as a job describes it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -69,12 +70,13 @@ impl Band {
         Self { wavelengths_nm: nodes.collect(), weights: NORMAL_NODES.iter().map(|(_, weight)| *weight).collect() }
     }
 
+    /// Whether each reading needs only its own wavelength.
+    pub fn is_sharp(&self) -> bool {
+        self.weights.len() == 1
+    }
+
     /// Averages the model's channels into one value a reading.
     pub fn average(&self, channels: &[f64], readings: &mut [f64]) {
-        if let [_] = self.weights[..] {
-            readings.copy_from_slice(channels);
-            return;
-        }
         for (reading, nodes) in readings.iter_mut().zip(channels.chunks_exact(self.weights.len())) {
             *reading = nodes.iter().zip(&self.weights).map(|(value, weight)| value * weight).sum();
         }
@@ -118,6 +120,15 @@ impl Aperture {
 
     /// Writes the reading in each channel; `scratch` is as long as `readings`.
     pub fn read(&self, bsdf: &dyn Bsdf, scratch: &mut [f64], readings: &mut [f64]) {
+        // Zero cones are the usual case, and need no sum.
+        let [(incoming, outgoing, weight)] = self.pairs[..] else { return self.read_cones(bsdf, scratch, readings) };
+        bsdf.evaluate(&incoming, &outgoing, readings);
+        for reading in readings {
+            *reading *= weight;
+        }
+    }
+
+    fn read_cones(&self, bsdf: &dyn Bsdf, scratch: &mut [f64], readings: &mut [f64]) {
         readings.fill(0.0);
         for (incoming, outgoing, weight) in &self.pairs {
             bsdf.evaluate(incoming, outgoing, scratch);
@@ -155,28 +166,6 @@ fn perpendicular(axis: &Direction) -> (Direction, Direction) {
     let helper = if axis.x.abs() < 0.9 { Direction::x() } else { Direction::y() };
     let side = axis.cross(&helper).normalize();
     (side, axis.cross(&side))
-}
-
-/// Nodes and weights on [0, 1], by Newton's method on the Legendre polynomial (Abramowitz & Stegun 1964, 25.4.30).
-fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
-    let n = as_f64(count);
-    (0..count)
-        .map(|index| {
-            let mut x = (std::f64::consts::PI * (as_f64(index) + 0.75) / (n + 0.5)).cos();
-            let mut slope = 1.0;
-            // Newton from this start converges quadratically: eight steps are past double precision for any count.
-            for _ in 0..8 {
-                let (mut previous, mut value) = (1.0, x);
-                for degree in 2..=count {
-                    let k = as_f64(degree);
-                    (previous, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k);
-                }
-                slope = n * (x * value - previous) / (x * x - 1.0);
-                x -= value / slope;
-            }
-            (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope))
-        })
-        .collect()
 }
 
 #[expect(clippy::cast_precision_loss, reason = "counts of rings and azimuths are far below 2^53")]
@@ -228,14 +217,5 @@ mod tests {
         let mut reading = [0.0];
         band.average(&channels, &mut reading);
         approx::assert_abs_diff_eq!(reading[0], (-0.5f64).exp(), epsilon = 1e-4);
-    }
-
-    #[test]
-    fn gauss_legendre_is_exact_for_its_degree() {
-        for count in 1..=8 {
-            let power = 2 * i32::try_from(count).unwrap() - 1;
-            let sum: f64 = gauss_legendre(count).iter().map(|(x, weight)| weight * x.powi(power)).sum();
-            approx::assert_relative_eq!(sum, 1.0 / f64::from(power + 1), max_relative = 1e-14);
-        }
     }
 }

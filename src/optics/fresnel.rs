@@ -8,6 +8,7 @@ use super::Polarised;
 ///
 /// `eta` is the index below the interface divided by the one above. A negative cosine is light that comes from below,
 /// for which the ratio is turned round. 1 for total internal reflection. (Born and Wolf 1999, section 1.5.2.)
+#[inline(always)]
 pub fn dielectric(cos_theta: f64, eta: f64) -> Polarised {
     let (cosine, eta) = if cos_theta >= 0.0 { (cos_theta, eta) } else { (-cos_theta, 1.0 / eta) };
     let sine_squared = (1.0 - cosine * cosine).max(0.0);

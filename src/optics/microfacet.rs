@@ -5,6 +5,8 @@
 
 use std::f64::consts::PI;
 
+pub use super::ggx::Ggx;
+
 /// Beckmann's distribution: slopes are Gaussian in every direction with standard deviation α/√2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beckmann {

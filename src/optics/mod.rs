@@ -9,16 +9,20 @@
 //! the unpolarised reflectance of the same things over many channels at once, which is what a fit evaluates a million
 //! times; it is tested against the reference.
 
-mod elementary;
+pub(crate) mod elementary;
 pub mod film;
 mod film_kernel;
 pub mod fresnel;
+mod ggx;
 mod layered;
 mod material;
 mod materials;
 pub mod microfacet;
 mod note;
 mod polarised;
+mod quadrature;
+mod rough_interface;
+mod rough_transmittance;
 pub mod stack;
 mod stack_kernel;
 
@@ -27,3 +31,6 @@ pub use material::{Dispersion, IndexTable, MaterialError};
 pub use materials::{Certainty, KnownMaterial, known_material, known_materials};
 pub use note::{MaterialNote, Reference};
 pub use polarised::{Amplitudes, Polarised, Response};
+pub(crate) use quadrature::gauss_legendre;
+pub use rough_interface::RoughInterface;
+pub use rough_transmittance::{RoughTransmittance, TransmittanceCurve, TransmittanceCurves};

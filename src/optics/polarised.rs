@@ -13,11 +13,13 @@ pub struct Polarised {
 
 impl Polarised {
     /// The same value for both.
+    #[inline(always)]
     pub fn both(value: f64) -> Self {
         Self { s: value, p: value }
     }
 
     /// Mean of the two: natural light.
+    #[inline(always)]
     pub fn unpolarised(self) -> f64 {
         0.5 * (self.s + self.p)
     }

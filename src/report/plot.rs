@@ -106,7 +106,7 @@ pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PaintError> {
         area.present().map_err(failed)?;
     }
     let mut bytes = Vec::new();
-    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive);
+    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
     averaged(&painted, OVERSAMPLING.unsigned_abs()).write_with_encoder(encoder).map_err(failed)?;
     Ok(bytes)
 }

@@ -3,8 +3,6 @@
 //! `tests/oracles/color_*.csv` were made with colour-science 0.4.7; `color_ciede2000.csv` starts with the 34 pairs of
 //! Sharma, Wu and Dalal (2005).
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap as tests do")]
-
 use std::collections::BTreeMap;
 use std::path::Path;
 

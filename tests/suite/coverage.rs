@@ -17,7 +17,7 @@ const SHORTEST_NM: f64 = 400.0;
 /// Keratin's index there, 1.532 + 5890/λ².
 const INDEX: f64 = 1.5688;
 
-/// λ_min/4n: half the way to the next order of interference.
+/// λ/4n at the shortest wavelength: half the way to the next order of interference.
 const HALF_ORDER_NM: f64 = SHORTEST_NM / (4.0 * INDEX);
 
 struct Verdict {

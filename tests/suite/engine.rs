@@ -98,11 +98,11 @@ impl Film {
                 readings.push(value * (1.0 + 0.01 * normal(&mut random)));
             }
         }
-        let chosen: Vec<usize> = (0..readings.len()).filter(|k| k.is_multiple_of(13)).collect();
+        let chosen = || (0..readings.len()).filter(|k| k.is_multiple_of(13));
         let coarse = Self {
             parameters: parameters.clone(),
-            geometry: chosen.iter().map(|&k| geometry[k]).collect(),
-            readings: chosen.iter().map(|&k| readings[k]).collect(),
+            geometry: chosen().map(|k| geometry[k]).collect(),
+            readings: chosen().map(|k| readings[k]).collect(),
             coarse: None,
         };
         Self { parameters, geometry, readings, coarse: Some(Box::new(coarse)) }

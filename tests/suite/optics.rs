@@ -8,30 +8,7 @@ use barbule::optics::{Arrangement, LayeredMedium, Permittivity, double_wavenumbe
 use num_complex::Complex64;
 use proptest::prelude::*;
 
-/// Rows of an oracle table as columns by name.
-struct Oracle {
-    names: Vec<String>,
-    rows: Vec<Vec<String>>,
-}
-
-impl Oracle {
-    fn read(path: &str) -> Self {
-        let mut reader = csv::Reader::from_path(path).expect("the table is there");
-        let names = reader.headers().expect("the table has names").iter().map(str::to_owned).collect();
-        let rows =
-            reader.records().map(|row| row.expect("the row is text").iter().map(str::to_owned).collect()).collect();
-        Self { names, rows }
-    }
-
-    fn number(&self, row: usize, name: &str) -> f64 {
-        self.text(row, name).parse().expect("the value is a number")
-    }
-
-    fn text(&self, row: usize, name: &str) -> &str {
-        let column = self.names.iter().position(|known| known == name).unwrap_or_else(|| panic!("no column {name}"));
-        &self.rows[row][column]
-    }
-}
+use super::oracle::Oracle;
 
 fn real(index: f64) -> Complex64 {
     Complex64::new(index, 0.0)

@@ -1,7 +1,5 @@
 //! The report as a reader gets it: a folder with a page, plots and tables.
 
-#![allow(clippy::unwrap_used, reason = "a helper of a test fails as the test does")]
-
 mod fixtures;
 mod markup;
 

@@ -1,7 +1,5 @@
 //! Tables as people have them: the good ones are read right, each bad one gets its sentence, and nothing panics.
 
-#![allow(clippy::unwrap_used, reason = "helpers of tests may unwrap as tests do")]
-
 use std::path::Path;
 
 use barbule::measure::{

@@ -1,0 +1,215 @@
+//! The models that a job can name: how each is made, what it is, and where it comes from.
+
+use std::fmt;
+
+use super::JobError;
+use super::file::ModelFile;
+use crate::bsdf::{
+    CoatedBase, GranierHeidrich, IridescentPlastic, Lambertian, MicrofacetInterface, Model, RoughPlastic,
+};
+use crate::measure::{PeakModel, ThinFilmLaw};
+use crate::optics::Reference;
+use crate::parameter::Parameter;
+
+impl ModelFile {
+    /// The scattering model at these wavelengths, nm.
+    pub(super) fn scattering(&self, wavelengths_nm: &[f64]) -> Result<Box<dyn Model>, JobError> {
+        Ok(match self {
+            Self::CoatedBase(design) => Box::new(CoatedBase::new(design, wavelengths_nm)?),
+            Self::Microfacet(design) => Box::new(MicrofacetInterface::new(design, wavelengths_nm)?),
+            Self::RoughPlastic(design) => Box::new(RoughPlastic::new(design, wavelengths_nm)?),
+            Self::IridescentPlastic(design) => Box::new(IridescentPlastic::new(design, wavelengths_nm)?),
+            Self::GranierHeidrich(design) => Box::new(GranierHeidrich::new(design, wavelengths_nm)?),
+            Self::Lambertian(design) => Box::new(Lambertian::new(design, wavelengths_nm)?),
+            Self::ThinFilmLaw(_) => {
+                let problem = "`thin-film-law` predicts peak wavelengths, not spectra; use `coated-base`";
+                return Err(JobError::key("model.kind", problem));
+            }
+        })
+    }
+
+    /// Its entry in the list of models.
+    pub(super) fn card(&self) -> &'static ModelCard {
+        match self {
+            Self::CoatedBase(_) => &COATED_BASE,
+            Self::Microfacet(_) => &MICROFACET,
+            Self::RoughPlastic(_) => &ROUGH_PLASTIC,
+            Self::IridescentPlastic(_) => &IRIDESCENT_PLASTIC,
+            Self::GranierHeidrich(_) => &GRANIER_HEIDRICH,
+            Self::Lambertian(_) => &LAMBERTIAN,
+            Self::ThinFilmLaw(_) => &THIN_FILM_LAW,
+        }
+    }
+}
+
+/// What is said of a model wherever it is named.
+#[derive(Debug)]
+pub(super) struct ModelCard {
+    /// Name in a job: `model.kind`.
+    pub(super) kind: &'static str,
+    /// What it is, complete sentences for a methods section.
+    pub(super) text: &'static str,
+    /// What it reads, and what to know before using it.
+    usage: &'static str,
+    /// A `[model]` section to start from.
+    example: &'static str,
+    /// Key and full citation of each work.
+    works: &'static [(&'static str, &'static str)],
+}
+
+impl ModelCard {
+    /// Works to cite.
+    pub(super) fn references(&self) -> Vec<Reference> {
+        self.works.iter().map(|(key, citation)| Reference::new(key, citation)).collect()
+    }
+}
+
+const WALTER: (&str, &str) = (
+    "Walter 2007",
+    "Walter, B., Marschner, S. R., Li, H. and Torrance, K. E. (2007). Microfacet models for refraction through rough \
+     surfaces. Eurographics Symposium on Rendering, 195–206.",
+);
+
+/// Every model, in the order in which `barbule models` lists them.
+const CARDS: [&ModelCard; 7] =
+    [&COATED_BASE, &MICROFACET, &ROUGH_PLASTIC, &IRIDESCENT_PLASTIC, &GRANIER_HEIDRICH, &LAMBERTIAN, &THIN_FILM_LAW];
+
+const COATED_BASE: ModelCard = ModelCard {
+    kind: "coated-base",
+    text: "A film, a stack of layers or a plain interface inside a rough surface (Beckmann), over a diffuse base.",
+    usage: "Reads spectra at any four angles, and peak wavelengths (then without roughness and base, which do not move a \
+            peak). Its parameters are named after the layers and materials of the job.",
+    example: "kind = \"coated-base\"\n\
+              layers = [{ name = \"cortex\", material = \"keratin\", thickness_nm = 330.0 }]\n\
+              substrate = \"bird_melanin\"",
+    works: &[],
+};
+
+const MICROFACET: ModelCard = ModelCard {
+    kind: "microfacet",
+    text: "A rough dielectric interface (Walter et al. 2007), which reflects and transmits.",
+    usage: "Reads spectra at any four angles, the viewer on either side.",
+    example: "kind = \"microfacet\"\ndistribution = \"beckmann\"",
+    works: &[WALTER],
+};
+
+const ROUGH_PLASTIC: ModelCard = ModelCard {
+    kind: "rough-plastic",
+    text: "A rough dielectric coat (Beckmann; Walter et al. 2007) over a diffuse base, with the light that the coat turns \
+           back summed over all bounces.",
+    usage: "Reads spectra at any four angles. `per_channel` gives the parameters that it names one value a wavelength.",
+    example: "kind = \"rough-plastic\"",
+    works: &[WALTER],
+};
+
+const IRIDESCENT_PLASTIC: ModelCard = ModelCard {
+    kind: "iridescent-plastic",
+    text: "A rough plastic with a phase term between its specular and its diffuse part in each channel. As published it \
+           may send out more than it receives.",
+    usage: "Reads spectra at any four angles. For energy conservation use `coated-base`.",
+    example: "kind = \"iridescent-plastic\"",
+    works: &[WALTER],
+};
+
+const GRANIER_HEIDRICH: ModelCard = ModelCard {
+    kind: "granier-heidrich",
+    text: "A diffuse base under a thin clear film with Phong lobes and Schlick's Fresnel factor (Granier and Heidrich \
+           2003). As published it is neither reciprocal nor energy-conserving.",
+    usage: "Reads spectra at any four angles.",
+    example: "kind = \"granier-heidrich\"",
+    works: &[(
+        "Granier & Heidrich 2003",
+        "Granier, X. and Heidrich, W. (2003). A simple layered RGB BRDF model. Graphical Models 65, 171–184.",
+    )],
+};
+
+const LAMBERTIAN: ModelCard = ModelCard {
+    kind: "lambertian",
+    text: "A Lambertian surface, equally bright from everywhere.",
+    usage: "Reads spectra at any four angles; the simplest control.",
+    example: "kind = \"lambertian\"",
+    works: &[],
+};
+
+const THIN_FILM_LAW: ModelCard = ModelCard {
+    kind: "thin-film-law",
+    text: "The closed law of a single film's peaks, m λ = 2 d √(n² − sin²θ).",
+    usage: "Reads peak wavelengths only.",
+    example: "kind = \"thin-film-law\"",
+    works: &[(
+        "Born & Wolf 1999",
+        "Born, M. and Wolf, E. (1999). Principles of Optics, 7th edition, section 7.6. Cambridge University Press.",
+    )],
+};
+
+/// A model as `barbule models` lists it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelEntry {
+    /// Name in a job: `model.kind`.
+    pub kind: &'static str,
+    /// What it is and what it reads.
+    pub text: String,
+    /// A `[model]` section to start from.
+    pub example: &'static str,
+    /// Parameters that the example declares.
+    pub parameters: Vec<Parameter>,
+}
+
+/// Wavelength for which a listing declares its parameters; only scan steps hang on it.
+const LISTING_NM: f64 = 500.0;
+
+/// Every model that a job can name.
+pub fn models() -> Result<Vec<ModelEntry>, JobError> {
+    let entry = |card: &&ModelCard| {
+        let model: ModelFile = toml::from_str(card.example)
+            .map_err(|error| JobError::key(format!("example of {}", card.kind), error.to_string()))?;
+        let parameters = match &model {
+            ModelFile::ThinFilmLaw(design) => ThinFilmLaw::new(design.clone(), LISTING_NM).parameters().to_vec(),
+            _ => model.scattering(&[LISTING_NM])?.parameters().to_vec(),
+        };
+        Ok(ModelEntry {
+            kind: card.kind,
+            text: format!("{} {}", card.text, card.usage),
+            example: card.example,
+            parameters,
+        })
+    };
+    CARDS.iter().map(entry).collect()
+}
+
+impl fmt::Display for ModelEntry {
+    fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
+        writeln!(formatter, "{}\n", self.kind)?;
+        for line in wrapped(&self.text, 100) {
+            writeln!(formatter, "  {line}")?;
+        }
+        writeln!(formatter, "\n  Example:\n")?;
+        for line in self.example.lines() {
+            writeln!(formatter, "    {line}")?;
+        }
+        writeln!(formatter, "\n  Its parameters (default, range, unit):\n")?;
+        for parameter in &self.parameters {
+            let range =
+                format!("{} [{} to {}] {}", parameter.default, parameter.lower, parameter.upper, parameter.unit);
+            writeln!(formatter, "    {:<28} {:<28} {}", parameter.name, range.trim_end(), parameter.text)?;
+        }
+        Ok(())
+    }
+}
+
+/// Lines of at most so many characters, broken at blanks.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let last = lines.len() - 1;
+        if lines[last].is_empty() {
+            word.clone_into(&mut lines[last]);
+        } else if lines[last].chars().count() + 1 + word.chars().count() <= width {
+            lines[last].push(' ');
+            lines[last].push_str(word);
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
+}
