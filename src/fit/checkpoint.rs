@@ -68,7 +68,7 @@ pub enum CheckpointError {
 ///
 /// The fits that are given one folder must come in the same order each time, one after the other: the n-th has the file
 /// `fit-n.json`. Least squares goes on within a solve; L-BFGS, Nelder–Mead and the swarm begin a solve anew that had not
-/// ended. What was done since the last saving, a second or so, is done again.
+/// ended. What was done since the last saving, a second or so, is done again. One process at a time may use a folder.
 #[derive(Debug)]
 pub struct Checkpoints {
     folder: PathBuf,
@@ -131,6 +131,7 @@ impl Checkpoints {
         Ok(Record {
             path,
             interval: self.interval,
+            begun: Instant::now(),
             contents: Mutex::new(contents),
             due: Mutex::new(Instant::now() + self.interval),
             failure: Mutex::new(None),
@@ -203,6 +204,7 @@ struct Contents {
 pub(super) struct Record {
     path: PathBuf,
     pub(super) interval: Duration,
+    begun: Instant,
     contents: Mutex<Contents>,
     /// When to write next; held by who writes.
     due: Mutex<Instant>,
@@ -228,9 +230,10 @@ impl Record {
         }
     }
 
-    /// Writes the file now, if there is anything to write: a fit that the user stopped can be picked up.
-    pub(super) fn write_now(&self) {
-        if !lock(&self.contents).solves.is_empty() {
+    /// Writes the file when the fit ends, if there is anything to write: a fit that the user stopped is to be picked up,
+    /// and one of many that took a tenth of the interval is not to be done again when the next one is killed.
+    pub(super) fn end(&self, interrupted: bool) {
+        if (interrupted || self.begun.elapsed() >= self.interval / 10) && !lock(&self.contents).solves.is_empty() {
             self.write(lock(&self.due));
         }
     }

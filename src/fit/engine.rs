@@ -67,9 +67,7 @@ pub fn fit(
     settle(&mut objective, &pattern, settings, &mut survey);
     let mut found = summarise(&objective, assignments, settings, survey);
     if let Some(record) = &record {
-        if control.interrupted() {
-            record.write_now();
-        }
+        record.end(control.interrupted());
         let warning = |error| format!("The fit is complete, but could not be picked up had it been killed: {error}");
         found.warnings.extend(record.failure().map(warning));
     }

@@ -175,8 +175,8 @@ fn an_interrupted_fit_is_picked_up_too() {
     let expected = bytes(&solve(&Mortal::new(u64::MAX), &settings, None).unwrap());
     let folder = tempfile::tempdir().unwrap();
     let interrupt = AtomicBool::new(false);
-    // The usual second between savings never passes: the end itself saves.
-    let checkpoints = Checkpoints::new(folder.path());
+    // The time between savings never passes: the end itself saves.
+    let checkpoints = Checkpoints::new(folder.path()).every(Duration::from_hours(1));
     let progress = |done: usize, _| {
         interrupt.fetch_or(done == 3, Ordering::Relaxed);
     };
@@ -254,7 +254,7 @@ fn fits_in_one_folder_keep_apart_and_leave_nothing() {
     assert_eq!(left, ["notes.txt"]);
 
     // A fit that is over before the first saving has written nothing at all.
-    let checkpoints = Checkpoints::new(parent.path().join("quick"));
+    let checkpoints = Checkpoints::new(parent.path().join("quick")).every(Duration::from_hours(1));
     let settings = Settings { starts: 1, ..settings(Solver::LeastSquares) };
     solve(&Mortal::new(u64::MAX), &settings, Some(&checkpoints)).unwrap();
     assert_eq!(fs::read_dir(parent.path().join("quick")).unwrap().count(), 0);
