@@ -1,6 +1,6 @@
 //! Barbule fits a physical model of how a feather looks to measurements of real feathers, and shows how good the fit is.
 //!
-//! The rooms, from the bottom up: [`optics`] → [`bsdf`] → [`measure`] → [`fit`] → [`job`] → [`report`]. Arrows point one
+//! The rooms, from the bottom up: [`optics`], [`pigment`] → [`bsdf`] → [`measure`] → [`fit`] → [`job`] → [`report`]. Arrows point one
 //! way. `fit` knows nothing of feathers; `job` is where a measurement, a model and the engine meet.
 
 pub mod bsdf;
@@ -10,4 +10,5 @@ pub mod measure;
 mod number;
 pub mod optics;
 pub mod parameter;
+pub mod pigment;
 pub mod report;

@@ -7,6 +7,7 @@
 
 mod channel_parameters;
 mod coated_base;
+pub mod cylinder;
 mod granier;
 mod interference;
 mod iridescent_plastic;
@@ -14,6 +15,7 @@ mod lambertian;
 mod microfacet;
 mod model_error;
 mod rough_plastic;
+pub mod spongy_barb;
 
 pub use coated_base::{
     CoatedBase, Description, Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice, OwnMaterial,

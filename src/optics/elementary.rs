@@ -1,4 +1,4 @@
-//! Sine, cosine and exponential without branches and without calls, so that a loop over channels becomes vector
+//! Sine, cosine, arc sine and exponential without branches and without calls, so that a loop over channels becomes vector
 //! instructions.
 //!
 //! The standard library's functions are calls into libm, and one call ends the vectorisation of the loop that holds
@@ -49,38 +49,75 @@ const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 
 /// exp(x) for x ≤ 0, relative error below 4e-16; 0 stands for everything below e^−708.
 ///
-/// Reduction by whole powers of two, then the Taylor series to the 13th power (remainder 4e-18 at |r| = ln 2/2).
+/// Reduction by whole powers of two to |r| ≤ ln 2/2, then 1 + r + r² P(r), with P the Chebyshev series of degree 8 of
+/// (e^r − 1 − r)/r² on that interval (first omitted term 1e-17, computed for this file in 60 digits).
 #[inline(always)]
 pub(crate) fn exp_of_negative(x: f64) -> f64 {
     let inside = x.max(-708.0);
     let shifted = inside * std::f64::consts::LOG2_E + ROUND;
     let power = shifted - ROUND;
     let r = (inside - power * LN_2_HIGH) - power * LN_2_LOW;
-    let mut series = 1.0 / 6_227_020_800.0;
-    for reciprocal_factorial in [
-        1.0 / 479_001_600.0,
-        1.0 / 39_916_800.0,
-        1.0 / 3_628_800.0,
-        1.0 / 362_880.0,
-        1.0 / 40_320.0,
-        1.0 / 5_040.0,
-        1.0 / 720.0,
-        1.0 / 120.0,
-        1.0 / 24.0,
-        1.0 / 6.0,
-        0.5,
+    let mut series = 2.762_008_948_195_459e-7;
+    for coefficient in [
+        2.762_511_702_960_606e-6,
+        2.480_152_129_346_386_2e-5,
+        1.984_120_872_948_519e-4,
+        1.388_888_891_721_558_6e-3,
+        8.333_333_353_731_23e-3,
+        4.166_666_666_662_412e-2,
+        1.666_666_666_664_828_6e-1,
+        0.500_000_000_000_000_1,
         1.0,
         1.0,
     ] {
-        series = series * r + reciprocal_factorial;
+        series = series * r + coefficient;
     }
     let two_to_power = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
     if x < -708.0 { 0.0 } else { series * two_to_power }
 }
 
+/// asin(x) for 0 ≤ x ≤ 1, absolute error below 5e-15.
+///
+/// asin x = x P(x²) up to 1/2, with P the Chebyshev series of degree 10 (first omitted term 4e-15, computed for this file
+/// in 60 digits); beyond, asin x = π/2 − 2 asin √((1 − x)/2).
+#[inline(always)]
+pub(crate) fn arc_sine_of_positive(x: f64) -> f64 {
+    let large = x > 0.5;
+    let half_complement = 0.5 * (1.0 - x);
+    let square = if large { half_complement } else { x * x };
+    let root = if large { half_complement.sqrt() } else { x };
+    let mut series = 3.162_602_288_099_282e-2;
+    for coefficient in [
+        -7.464_967_474_804e-3,
+        1.800_678_340_489_532_7e-2,
+        1.252_622_520_983_196_8e-2,
+        1.755_432_126_616_409_2e-2,
+        2.235_425_010_169_769_8e-2,
+        3.038_292_856_590_311_3e-2,
+        4.464_282_576_596_411e-2,
+        7.500_000_051_106_93e-2,
+        1.666_666_666_634_292_7e-1,
+        1.000_000_000_000_003_3,
+    ] {
+        series = series * square + coefficient;
+    }
+    let angle = root * series;
+    if large { std::f64::consts::FRAC_PI_2 - 2.0 * angle } else { angle }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn arc_sine_agrees_with_libm() {
+        let mut worst: f64 = 0.0;
+        for i in 0..=1_000_000 {
+            let x = f64::from(i) * 1e-6;
+            worst = worst.max((arc_sine_of_positive(x) - x.asin()).abs());
+        }
+        assert!(worst <= 5e-15, "worst absolute error {worst:e}");
+    }
 
     /// Largest difference from the standard library over a dense list of phases that no grid of quarter turns shares.
     #[test]
