@@ -43,7 +43,7 @@ fn case() -> CheckedCase {
 fn benchmark(criterion: &mut Criterion) {
     let case = case();
     let interrupt = AtomicBool::new(false);
-    let control = Control { interrupt: &interrupt, progress: &|_, _| () };
+    let control = Control { interrupt: &interrupt, progress: &|_, _| (), checkpoint: None };
     let residuals = case.residuals();
     let values: Vec<f64> = residuals.parameters().iter().map(|parameter| parameter.default).collect();
     let mut rows = vec![0.0; residuals.count()];

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
-use barbule::fit::{Control, StopReason};
+use barbule::fit::{Checkpoints, Control, StopReason};
 use barbule::job::{self, Job, Outcome};
 use barbule::report;
 use clap::{Args, ValueEnum};
@@ -32,6 +32,9 @@ pub(super) struct Fit {
     /// Number of threads [default: one a core]. The result does not depend on it.
     #[arg(long, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Folder in which the fit saves its progress each second; a killed or interrupted one goes on from there.
+    #[arg(long, value_name = "FOLDER")]
+    checkpoint: Option<PathBuf>,
     /// What to print at the end.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -74,12 +77,17 @@ impl Fit {
             bar.set_length(total as u64);
             bar.set_position(done as u64);
         };
-        let outcome = job::run(&job, &Control { interrupt: &INTERRUPTED, progress: &progress })?;
+        let checkpoints = self.checkpoint.map(Checkpoints::new);
+        let control = Control { interrupt: &INTERRUPTED, progress: &progress, checkpoint: checkpoints.as_ref() };
+        let outcome = job::run(&job, &control)?;
         bar.finish_and_clear();
 
         let page = report::write_report(&outcome, &folder)?;
         let result = serde_json::to_string_pretty(&outcome).context("the result cannot be written as JSON")?;
         report::write_file(&folder.join("result.json"), result.as_bytes())?;
+        if let Some(checkpoints) = checkpoints.filter(|_| !INTERRUPTED.load(Ordering::Relaxed)) {
+            checkpoints.remove()?;
+        }
         match self.format {
             Format::Json => print(&result)?,
             Format::Text => {

@@ -3,6 +3,8 @@
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::checkpoint::Checkpoints;
+
 /// What the caller keeps in hand while a fit runs.
 #[derive(Clone, Copy)]
 pub struct Control<'a> {
@@ -10,6 +12,8 @@ pub struct Control<'a> {
     pub interrupt: &'a AtomicBool,
     /// Called with the number of starts done and their total, from any thread.
     pub progress: &'a (dyn Fn(usize, usize) + Sync),
+    /// Where to save how far the fit is, and to pick it up where it was killed; None to save nothing.
+    pub checkpoint: Option<&'a Checkpoints>,
 }
 
 impl Control<'_> {
@@ -21,6 +25,7 @@ impl Control<'_> {
 
 impl fmt::Debug for Control<'_> {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.debug_struct("Control").field("interrupt", self.interrupt).finish_non_exhaustive()
+        let mut text = formatter.debug_struct("Control");
+        text.field("interrupt", self.interrupt).field("checkpoint", &self.checkpoint).finish_non_exhaustive()
     }
 }

@@ -63,7 +63,7 @@ impl Curvature {
     /// Differentiates at `free`; None where the model is not finite around it.
     pub(super) fn new(
         objective: &Objective<'_>,
-        differences: &mut Differences<'_>,
+        differences: &mut Differences,
         bounds: &Bounds,
         free: &[f64],
         accuracy: Accuracy,

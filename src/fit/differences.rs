@@ -9,12 +9,13 @@
 use std::ops::Range;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::linear::dot;
 use super::objective::Objective;
 
 /// Allowed values of each free parameter in one run. Equal bounds hold a parameter.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Bounds {
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
@@ -33,7 +34,7 @@ impl Bounds {
 }
 
 /// How exact a Jacobian is wanted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Accuracy {
     /// One-sided differences: about 1e-7 of a column's length.
     Travel,
@@ -42,7 +43,7 @@ pub(super) enum Accuracy {
 }
 
 /// What the differences of one problem share: which rows each parameter touches, and which parameters go together.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Pattern {
     touched: Vec<Range<usize>>,
     groups: Vec<Vec<usize>>,
@@ -103,16 +104,27 @@ struct Part<'a> {
 }
 
 /// Differences in one run: the steps found so far.
-#[derive(Debug, Clone)]
-pub(super) struct Differences<'a> {
-    pattern: &'a Pattern,
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Differences {
+    #[serde(skip)]
+    pattern: Pattern,
     /// Step of the extrapolated differences relative to the parameter's size, once found.
     settled: Vec<Option<f64>>,
 }
 
-impl<'a> Differences<'a> {
-    pub(super) fn new(pattern: &'a Pattern) -> Self {
-        Self { pattern, settled: vec![None; pattern.touched.len()] }
+impl Differences {
+    pub(super) fn new(pattern: &Pattern) -> Self {
+        Self { pattern: pattern.clone(), settled: vec![None; pattern.touched.len()] }
+    }
+
+    /// These differences with the steps that others have found.
+    pub(super) fn with_steps_of(&self, others: Self) -> Self {
+        Self { pattern: self.pattern.clone(), settled: others.settled }
+    }
+
+    /// Steps found so far, which decide what the next Jacobian is.
+    pub(super) fn steps(&self) -> &[Option<f64>] {
+        &self.settled
     }
 
     /// Writes ∂rows/∂free (column-major, before any loss) at `free`, where the rows are `base`. Columns of held

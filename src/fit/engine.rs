@@ -1,8 +1,10 @@
 //! The fit, from assignments to result.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::assignment::Assignment;
+use super::checkpoint::{Checkpoints, fingerprint};
 use super::control::Control;
 use super::curvature::Curvature;
 use super::differences::{Accuracy, Differences, Pattern};
@@ -29,7 +31,7 @@ const SIGMA_ROUNDS: usize = 20;
 ///
 /// # Errors
 ///
-/// What only the user can mend: contradictory bounds, a start outside of them, a tie to a tied parameter, nothing free,
+/// What only the user can mend: a checkpoint of another fit, contradictory bounds, a start outside of them, a tie to a tied parameter, nothing free,
 /// too few readings, a setting out of range, or a model that is finite at no start.
 pub fn fit(
     residuals: &dyn Residuals,
@@ -41,6 +43,9 @@ pub fn fit(
     let counters = Counters::default();
     let mut objective = Objective::new(residuals, &mapping, assignments, settings, control, &counters);
     enough_readings(&objective)?;
+    let begin = |checkpoints: &Checkpoints| checkpoints.next(fingerprint(&objective, assignments, settings));
+    let record = control.checkpoint.map(begin).transpose()?.map(Arc::new);
+    objective.record = record.as_ref();
     let pattern = Pattern::new(&objective, expensive(&objective));
     let mut survey = search(&objective, &pattern, settings);
     // A prior is weighed against σ. Where that is unknown it comes from the fit itself, and the search is repeated until
@@ -58,7 +63,13 @@ pub fn fit(
         return Err(no_finite_start(&objective, survey.starts));
     }
     settle(&mut objective, &pattern, settings, &mut survey);
-    Ok(summarise(&objective, assignments, settings, survey))
+    let mut found = summarise(&objective, assignments, settings, survey);
+    if let Some(record) = &record {
+        record.end(control.interrupted());
+        let warning = |error| format!("The fit is complete, but could not be picked up had it been killed: {error}");
+        found.warnings.extend(record.failure().map(warning));
+    }
+    Ok(found)
 }
 
 /// Finds the mistakes that can be found before anything is computed, as [`fit`] does when it begins.
@@ -97,7 +108,7 @@ fn settle(objective: &mut Objective<'_>, pattern: &Pattern, settings: &Settings,
 }
 
 /// One minimum, by least squares where that is the solver asked for; the steps found are kept for the next one.
-fn settle_one(objective: &Objective<'_>, differences: &mut Differences<'_>, settings: &Settings, found: &mut Found) {
+fn settle_one(objective: &Objective<'_>, differences: &mut Differences, settings: &Settings, found: &mut Found) {
     let bounds = all_bounds(objective);
     if matches!(settings.solver, Solver::LeastSquares | Solver::ParticleSwarm) {
         let start = differences.clone();

@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use super::checkpoint::CheckpointError;
+
 /// Why a fit could not begin. Numerical trouble is never an error: it ends in a [`Fit`](super::Fit) whose
 /// [`StopReason`](super::StopReason) says so.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -107,6 +109,9 @@ pub enum FitError {
         /// Allowed range.
         expected: &'static str,
     },
+    /// The checkpoint of an earlier run.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
     /// No start gave a finite residual.
     #[error(
         "the model gives no finite residuals at any of the {starts} start points (the first has {first}); check the start values, the bounds and the readings."

@@ -46,6 +46,7 @@
 use argmin::core::{Error, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus};
 use argmin::kv;
 use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
 
 use super::differences::{Accuracy, Bounds, Differences};
 use super::objective::{Objective, Point};
@@ -56,7 +57,7 @@ use super::step::{Damping, LinearModel, Step};
 pub(super) type LocalState = IterState<DVector<f64>, (), (), (), (), f64>;
 
 /// When to stop.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) enum Finish {
     /// When a full step promises less than this share of the cost per row: 1e-4 is a hundredth of a standard error.
     Travelled(f64),
@@ -85,10 +86,11 @@ const MOST_BEND: f64 = 0.375;
 const MOST_STRETCH: f64 = 8.0;
 const LEAST_STRETCH: f64 = 1.3;
 
-/// The solver with its buffers.
-#[derive(Debug)]
-pub(super) struct LeastSquares<'a> {
-    differences: Differences<'a>,
+/// The solver with its buffers. What is skipped in a checkpoint is the same for every iteration, or made anew.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct LeastSquares {
+    differences: Differences,
+    #[serde(skip)]
     bounds: Bounds,
     finish: Finish,
     accuracy: Accuracy,
@@ -96,22 +98,29 @@ pub(super) struct LeastSquares<'a> {
     growth: f64,
     /// Damping of the last step that helped.
     helpful: f64,
-    /// Rows at the present point, before the loss.
+    /// Rows at the present point, before the loss; empty where they are not known, after a checkpoint.
+    #[serde(skip)]
     rows: Vec<f64>,
+    #[serde(skip)]
     trial: Vec<f64>,
+    #[serde(skip)]
     values: Vec<f64>,
+    #[serde(skip)]
     jacobian: Vec<f64>,
+    #[serde(skip)]
     right: Vec<f64>,
+    #[serde(skip)]
     here: Vec<f64>,
+    #[serde(skip)]
     scale: Vec<f64>,
     /// Smallest settled step so far, relative, and how many have not been smaller since.
-    smallest: f64,
+    smallest: Option<f64>,
     idle: usize,
     stop: Option<StopReason>,
 }
 
-impl<'a> LeastSquares<'a> {
-    pub(super) fn new(objective: &Objective<'_>, differences: Differences<'a>, bounds: Bounds, finish: Finish) -> Self {
+impl LeastSquares {
+    pub(super) fn new(objective: &Objective<'_>, differences: Differences, bounds: Bounds, finish: Finish) -> Self {
         let (rows, free) = (objective.rows(), bounds.lower.len());
         Self {
             differences,
@@ -128,10 +137,22 @@ impl<'a> LeastSquares<'a> {
             right: vec![0.0; rows],
             here: vec![0.0; rows],
             scale: vec![0.0; free],
-            smallest: f64::INFINITY,
+            smallest: None,
             idle: 0,
             stop: None,
         }
+    }
+
+    /// A saved solver, with the surroundings and buffers of this one.
+    pub(super) fn resumed(&self, saved: Self) -> Self {
+        let Self { bounds, trial, values, jacobian, right, here, scale, .. } = self.clone();
+        let differences = self.differences.with_steps_of(saved.differences);
+        Self { differences, bounds, trial, values, jacobian, right, here, scale, ..saved }
+    }
+
+    /// Whether it is still on its way.
+    pub(super) fn runs(&self) -> bool {
+        self.stop.is_none()
     }
 
     /// Why it stopped; a run that argmin ended was at its limit.
@@ -200,8 +221,8 @@ impl<'a> LeastSquares<'a> {
         if there.cost > point.cost * (1.0 + 1e-9) {
             return false;
         }
-        if size < 0.9 * self.smallest {
-            (self.smallest, self.idle) = (size, 0);
+        if self.smallest.is_none_or(|smallest| size < 0.9 * smallest) {
+            (self.smallest, self.idle) = (Some(size), 0);
         } else {
             self.idle += 1;
         }
@@ -286,6 +307,13 @@ impl<'a> LeastSquares<'a> {
         Point { free, cost }
     }
 
+    /// Makes the rows anew after a checkpoint. That evaluation has been counted before it.
+    fn know_rows(&mut self, objective: &Objective<'_>, free: &[f64]) {
+        if self.rows.is_empty() {
+            self.rows = objective.rows_uncounted(free);
+        }
+    }
+
     /// Moves to the trial point just evaluated.
     fn accept(&mut self, point: &mut Point, there: Point) {
         std::mem::swap(&mut self.rows, &mut self.trial);
@@ -303,7 +331,7 @@ impl<'a> LeastSquares<'a> {
     }
 }
 
-impl<'o> Solver<&'o Objective<'o>, LocalState> for LeastSquares<'_> {
+impl<'o> Solver<&'o Objective<'o>, LocalState> for LeastSquares {
     fn name(&self) -> &'static str {
         "bounded Levenberg–Marquardt"
     }
@@ -335,6 +363,7 @@ impl<'o> Solver<&'o Objective<'o>, LocalState> for LeastSquares<'_> {
             if objective.control.interrupted() {
                 self.stop = Some(StopReason::Cancelled);
             } else {
+                self.know_rows(objective, &point.free);
                 self.iterate(objective, &mut point);
             }
             Ok(())

@@ -1,6 +1,7 @@
 //! The fit engine: parameters, residuals, solvers, starts, uncertainty. It knows nothing of feathers.
 
 mod assignment;
+mod checkpoint;
 mod control;
 mod curvature;
 mod differences;
@@ -25,6 +26,7 @@ mod summary;
 mod warnings;
 
 pub use assignment::{Assignment, Prior, Role};
+pub use checkpoint::{CheckpointError, Checkpoints};
 pub use control::Control;
 pub use engine::{check, fit};
 pub use error::FitError;

@@ -4,10 +4,13 @@
 //! not finite, counts, remembers the best point of all, and hears the interrupt. Solvers behind it may fail, panic-free,
 //! in any way they like: the best point is not theirs to lose.
 
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+
+use serde::{Deserialize, Serialize};
 
 use super::assignment::Assignment;
+use super::checkpoint::Record;
 use super::control::Control;
 use super::linear::dot;
 use super::loss::RobustLoss;
@@ -22,11 +25,32 @@ pub(super) struct PriorRow {
     pub(super) terms: Vec<(usize, f64)>,
 }
 
-/// Evaluations of all objectives of one fit.
+/// Evaluations so far.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+pub(super) struct Counts {
+    pub(super) evaluations: u64,
+    pub(super) not_finite: u64,
+}
+
+/// Evaluations of all objectives of one fit, or of one of its solves.
 #[derive(Debug, Default)]
 pub(super) struct Counters {
-    pub(super) evaluations: AtomicU64,
-    pub(super) not_finite: AtomicU64,
+    evaluations: AtomicU64,
+    not_finite: AtomicU64,
+}
+
+impl Counters {
+    pub(super) fn counts(&self) -> Counts {
+        Counts {
+            evaluations: self.evaluations.load(Ordering::Relaxed),
+            not_finite: self.not_finite.load(Ordering::Relaxed),
+        }
+    }
+
+    pub(super) fn add(&self, counts: Counts) {
+        self.evaluations.fetch_add(counts.evaluations, Ordering::Relaxed);
+        self.not_finite.fetch_add(counts.not_finite, Ordering::Relaxed);
+    }
 }
 
 /// A point and its cost.
@@ -46,7 +70,11 @@ pub(super) struct Objective<'a> {
     /// What one σ of the readings is in units of the residuals: 1 where σ is known. Priors are multiplied by it.
     pub(super) sigma: f64,
     pub(super) control: &'a Control<'a>,
-    counters: &'a Counters,
+    pub(super) counters: &'a Counters,
+    /// Where solves are saved, if anywhere.
+    pub(super) record: Option<&'a Arc<Record>>,
+    /// Whether its readings are a selection of the fit's.
+    pub(super) coarse: bool,
 }
 
 impl<'a> Objective<'a> {
@@ -67,10 +95,10 @@ impl<'a> Objective<'a> {
         let priors = priors.collect();
         let loss = RobustLoss::new(settings);
         let readings = residuals.count();
-        Self { residuals, mapping, loss, priors, readings, sigma: 1.0, control, counters }
+        Self { residuals, mapping, loss, priors, readings, sigma: 1.0, control, counters, record: None, coarse: false }
     }
 
-    /// The same objective on other residuals of the same parameters.
+    /// The same objective on a selection of the readings.
     pub(super) fn on(&self, residuals: &'a dyn Residuals) -> Self {
         Self {
             residuals,
@@ -81,7 +109,22 @@ impl<'a> Objective<'a> {
             sigma: self.sigma,
             control: self.control,
             counters: self.counters,
+            record: self.record,
+            coarse: true,
         }
+    }
+
+    /// The same objective, its evaluations counted elsewhere.
+    pub(super) fn counted_by<'b>(&'b self, counters: &'b Counters) -> Objective<'b> {
+        Objective { counters, coarse: self.coarse, ..self.on(self.residuals) }
+    }
+
+    /// Rows at a point, before any loss; the evaluation is not counted.
+    pub(super) fn rows_uncounted(&self, free: &[f64]) -> Vec<f64> {
+        let mut values = vec![0.0; self.residuals.parameters().len()];
+        let mut rows = vec![0.0; self.rows()];
+        self.counted_by(&Counters::default()).evaluate(free, &mut values, &mut rows);
+        rows
     }
 
     /// Whether there are priors to be weighed against a σ that only the fit can tell.
@@ -139,7 +182,8 @@ impl<'a> Objective<'a> {
 
     /// Evaluations so far, and how many were not finite.
     pub(super) fn counts(&self) -> (u64, u64) {
-        (self.counters.evaluations.load(Ordering::Relaxed), self.counters.not_finite.load(Ordering::Relaxed))
+        let Counts { evaluations, not_finite } = self.counters.counts();
+        (evaluations, not_finite)
     }
 }
 

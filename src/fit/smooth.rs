@@ -25,7 +25,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::curvature::Curvature;
 use super::differences::{Accuracy, Bounds, Differences, Pattern};
-use super::local::LocalFit;
+use super::local::{LocalFit, once};
 use super::objective::{BestSoFar, Objective, Point};
 use super::outcome::StopReason;
 use super::starts::range;
@@ -175,6 +175,20 @@ pub(super) fn bound_free(
     method: Method,
     max_iterations: u64,
 ) -> Option<LocalFit> {
+    let task = (start, method, max_iterations);
+    once(objective, format_args!("bound-free {task:?}"), |objective, _| {
+        bound_free_anew(objective, pattern, bounds, start, method, max_iterations)
+    })
+}
+
+fn bound_free_anew(
+    objective: &Objective<'_>,
+    pattern: &Pattern,
+    bounds: &Bounds,
+    start: &[f64],
+    method: Method,
+    max_iterations: u64,
+) -> Option<LocalFit> {
     let changes: Vec<Change> = (0..start.len())
         .map(|j| Change::new(bounds.lower[j], bounds.upper[j], start[j], objective.mapping.free[j].scale))
         .collect();
@@ -228,7 +242,20 @@ pub(super) fn swarm(
     particles: usize,
     seed: u64,
     max_iterations: u64,
-) -> Option<Point> {
+) -> Option<LocalFit> {
+    once(objective, format_args!("swarm"), |objective, _| {
+        swarm_anew(objective, pattern, bounds, particles, seed, max_iterations)
+    })
+}
+
+fn swarm_anew(
+    objective: &Objective<'_>,
+    pattern: &Pattern,
+    bounds: &Bounds,
+    particles: usize,
+    seed: u64,
+    max_iterations: u64,
+) -> Option<LocalFit> {
     let ranges: Vec<(f64, f64)> = objective.mapping.free.iter().map(range).collect();
     let best = BestSoFar::default();
     let changes = ranges.iter().map(|&(lower, upper)| Change::Line { start: lower, size: upper - lower }).collect();
@@ -243,7 +270,9 @@ pub(super) fn swarm(
         .configure(|state: PopulationState<Particle<DVector<f64>, f64>, f64>| state.max_iters(max_iterations));
     // An error could only be the guard's, whose best point is kept.
     drop(executor.run());
-    best.take()
+    let Point { free, cost } = best.take()?;
+    // Not judged: it is polished before anything is made of it.
+    Some(LocalFit { path: vec![free.clone()], free, cost, stop: StopReason::Limit })
 }
 
 fn rows_at_start(objective: &Objective<'_>) -> Option<(Vec<f64>, f64)> {

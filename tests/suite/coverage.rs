@@ -66,7 +66,8 @@ fn study(item: u64) -> Verdict {
     let job = Job::from_text("coverage", &job, std::path::Path::new(".")).unwrap();
     let (cases, _) = job.cases().unwrap();
     let start = std::time::Instant::now();
-    let fit = cases[0].fit(&Control { interrupt: &AtomicBool::new(false), progress: &|_, _| () }).unwrap();
+    let fit =
+        cases[0].fit(&Control { interrupt: &AtomicBool::new(false), progress: &|_, _| (), checkpoint: None }).unwrap();
     let seconds = start.elapsed().as_secs_f64();
     judge(&fit, truth_nm, seconds)
 }

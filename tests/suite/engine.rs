@@ -62,7 +62,7 @@ fn free(start: f64, lower: f64, upper: f64) -> Assignment {
 
 fn run(residuals: &dyn Residuals, assignments: &[Assignment], settings: &Settings) -> Result<Fit, FitError> {
     let interrupt = AtomicBool::new(false);
-    fit(residuals, assignments, settings, &Control { interrupt: &interrupt, progress: &|_, _| {} })
+    fit(residuals, assignments, settings, &Control { interrupt: &interrupt, progress: &|_, _| {}, checkpoint: None })
 }
 
 /// A single film between air and a darker substrate at normal to 60°: the cosine fringes of a real one.
@@ -483,10 +483,11 @@ fn laplace_weights_agree_with_integration() {
         let total: f64 = mass.iter().sum();
         assert!(result.minima.len() >= 4, "{:?}", result.minima);
         for (minimum, mass) in result.minima.iter().zip(&mass) {
-            // Laplace leaves out what is not Gaussian: percents with ten readings, more in the tails without σ.
+            // Laplace leaves out what is not Gaussian: percents with ten readings, more in the tails without σ, and the
+            // slope of 1/x over a well.
             let (found, expected) = (minimum.weight, mass / total);
             assert!(
-                (found - expected).abs() < 0.02,
+                (found - expected).abs() < 0.025,
                 "known {known}, x = {}: {found} for {expected}",
                 minimum.values[0]
             );
@@ -505,7 +506,7 @@ fn an_interrupt_keeps_the_best_so_far() {
     use barbule::fit::Solver::{LBfgs, LeastSquares, NelderMead, ParticleSwarm};
     for solver in [LeastSquares, LBfgs, NelderMead, ParticleSwarm] {
         let interrupt = AtomicBool::new(true);
-        let control = Control { interrupt: &interrupt, progress: &|_, _| {} };
+        let control = Control { interrupt: &interrupt, progress: &|_, _| {}, checkpoint: None };
         let settings = Settings { solver, ..Settings::default() };
         let assignments = [free(1.0, -9.0, 9.0), free(1.0, -9.0, 9.0)];
         let result = fit(&line(&x, &y, 0.5, true), &assignments, &settings, &control).unwrap();

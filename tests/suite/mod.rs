@@ -1,5 +1,6 @@
 //! Table of contents.
 
+mod checkpoint;
 mod coated_base;
 mod colour;
 mod command_line;
@@ -10,6 +11,7 @@ mod desk;
 mod directions;
 mod engine;
 mod granier;
+mod jacobian;
 mod jobs;
 mod microfacet;
 mod nist;

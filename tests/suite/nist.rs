@@ -180,7 +180,7 @@ fn solve(problem: &Problem, starts: &[f64]) -> Fit {
     let assignments: Vec<Assignment> = starts.iter().map(free).collect();
     let settings = Settings { starts: 1, ..Settings::default() };
     let interrupt = AtomicBool::new(false);
-    let control = Control { interrupt: &interrupt, progress: &|_, _| {} };
+    let control = Control { interrupt: &interrupt, progress: &|_, _| {}, checkpoint: None };
     fit(problem, &assignments, &settings, &control).unwrap()
 }
 

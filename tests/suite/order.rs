@@ -47,7 +47,8 @@ fn study(item: u64) -> (f64, f64) {
     );
     let job = Job::from_text("order", &job, Path::new(".")).unwrap();
     let (cases, _) = job.cases().unwrap();
-    let fit = cases[0].fit(&Control { interrupt: &AtomicBool::new(false), progress: &|_, _| () }).unwrap();
+    let fit =
+        cases[0].fit(&Control { interrupt: &AtomicBool::new(false), progress: &|_, _| (), checkpoint: None }).unwrap();
     (truth_nm, fit.estimates.iter().find(|estimate| estimate.name == "film.thickness_nm").unwrap().value)
 }
 

@@ -10,7 +10,9 @@ use barbule::job::{self, Case, CaseData, Job};
 fn main_case(name: &str) -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fits").join(name);
     let job = Job::read(&folder).unwrap();
-    let outcome = job::run(&job, &Control { interrupt: &AtomicBool::new(false), progress: &|_, _| () }).unwrap();
+    let outcome =
+        job::run(&job, &Control { interrupt: &AtomicBool::new(false), progress: &|_, _| (), checkpoint: None })
+            .unwrap();
     outcome.cases.into_iter().next().unwrap()
 }
 

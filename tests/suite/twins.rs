@@ -108,7 +108,8 @@ fn fitted_thicknesses(set: &Set) -> Vec<f64> {
     );
     let job = Job::from_text("twins", &job, folder.path()).unwrap();
     let (cases, _) = job.cases().unwrap();
-    let fit = cases[0].fit(&Control { interrupt: &AtomicBool::new(false), progress: &|_, _| () }).unwrap();
+    let fit =
+        cases[0].fit(&Control { interrupt: &AtomicBool::new(false), progress: &|_, _| (), checkpoint: None }).unwrap();
     let place = fit.estimates.iter().position(|estimate| estimate.name == "film.thickness_nm").unwrap();
     fit.minima.iter().map(|minimum| minimum.values[place]).collect()
 }
