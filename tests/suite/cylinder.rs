@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use barbule::bsdf::cylinder::{
-    AzimuthalLobe, Cylinder, CylinderModel, CylinderParameters, FibreAngles, FibreIndex, LongitudinalMapping,
+    AzimuthalLobe, Cylinder, CylinderDesign, CylinderModel, CylinderParameters, FibreAngles, LongitudinalMapping,
     mean_attenuation,
 };
 use barbule::bsdf::spongy_barb::{SpongeBand, SpongyBarb};
-use barbule::bsdf::{Direction, Model};
+use barbule::bsdf::{Direction, Model, ModelError};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -317,33 +317,29 @@ fn impossible_fibres_are_refused_in_a_sentence() {
         assert!(refused(&|bad| bad.sigma_a[2] = sigma_a).starts_with("the absorption sigma_a of channel 2 must be"));
     }
     assert!(refused(&|bad| bad.eta.truncate(1)).contains("1 indices and 3 absorptions"));
-    for wavelengths in [vec![645.0, 645.0], vec![0.0], vec![f64::NAN]] {
-        assert!(rgb_model(&wavelengths, FibreIndex::Shared).is_err());
-    }
+    assert!(rgb_model(&[], &[]).is_err());
+    assert!(rgb_model(&[f64::NAN], &[]).is_err());
+    assert!(rgb_model(&[645.0], &["beta_m"]).is_err());
 }
 
-fn rgb_model(
-    wavelengths_nm: &[f64],
-    index: FibreIndex,
-) -> Result<CylinderModel, barbule::bsdf::cylinder::CylinderError> {
-    CylinderModel::new(wavelengths_nm, index, LongitudinalMapping::Chiang, AzimuthalLobe::TrimmedLogistic)
+fn rgb_model(wavelengths_nm: &[f64], per_channel: &[&str]) -> Result<CylinderModel, ModelError> {
+    let per_channel = per_channel.iter().map(|name| (*name).to_owned()).collect();
+    CylinderModel::new(&CylinderDesign { per_channel, ..CylinderDesign::default() }, wavelengths_nm)
 }
 
 /// One index a channel, all equal, is one index for all: to the last bit, whatever the number of channels.
 #[test]
-fn parameters_are_named_by_wavelength_and_channels_are_independent() {
-    let shared = rgb_model(&[645.0, 525.5, 445.0], FibreIndex::Shared).unwrap();
-    let separate = rgb_model(&[645.0, 525.5, 445.0], FibreIndex::PerChannel).unwrap();
-    let names =
-        |model: &CylinderModel| model.parameters().iter().map(|parameter| parameter.name.clone()).collect::<Vec<_>>();
-    assert_eq!(names(&shared), ["eta", "beta_m", "beta_n", "sigma_a@645", "sigma_a@525.5", "sigma_a@445"]);
-    assert_eq!(names(&separate)[..4], ["eta@645", "eta@525.5", "eta@445", "beta_m"]);
+fn channels_are_independent() {
+    let shared = rgb_model(&[645.0, 525.5, 445.0], &["sigma_a"]).unwrap();
+    let separate = rgb_model(&[645.0, 525.5, 445.0], &["eta", "sigma_a"]).unwrap();
+    let names: Vec<&str> = separate.parameters().iter().map(|parameter| parameter.name.as_str()).collect();
+    assert_eq!(names, ["eta_r", "eta_g", "eta_b", "beta_m", "beta_n", "sigma_a_r", "sigma_a_g", "sigma_a_b"]);
 
     let (incoming, outgoing) = (Direction::new(0.1, 0.3, 0.9).normalize(), Direction::new(-0.2, 0.7, -0.4).normalize());
     let (mut one, mut three, mut alone) = ([0.0; 3], [0.0; 3], [0.0; 1]);
     shared.bind(&[1.5, 0.3, 0.25, 0.1, 0.2, 0.7]).evaluate(&incoming, &outgoing, &mut one);
     separate.bind(&[1.5, 1.5, 1.5, 0.3, 0.25, 0.1, 0.2, 0.7]).evaluate(&incoming, &outgoing, &mut three);
-    let single = rgb_model(&[445.0], FibreIndex::Shared).unwrap();
+    let single = rgb_model(&[445.0], &[]).unwrap();
     single.bind(&[1.5, 0.3, 0.25, 0.7]).evaluate(&incoming, &outgoing, &mut alone);
     assert_eq!(one.map(f64::to_bits), three.map(f64::to_bits));
     assert_eq!(one[2].to_bits(), alone[0].to_bits());
@@ -359,7 +355,7 @@ fn parameters_are_named_by_wavelength_and_channels_are_independent() {
 /// Values inside the declared bounds always give finite results, in every direction.
 #[test]
 fn bounds_are_safe() {
-    let model = rgb_model(&[645.0], FibreIndex::Shared).unwrap();
+    let model = rgb_model(&[645.0], &[]).unwrap();
     let corners: Vec<Vec<f64>> = (0..16)
         .map(|corner| {
             let bound = |(k, parameter): (usize, &barbule::parameter::Parameter)| {

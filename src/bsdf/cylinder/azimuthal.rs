@@ -1,14 +1,19 @@
 //! How roughness blurs the direction in which a path leaves the fibre: two densities of the azimuth on a circle.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use std::f64::consts::{PI, TAU};
 
 use crate::optics::elementary::exp_of_negative;
 
 /// The density D by which a lobe Nₚ is blurred around the circle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum AzimuthalLobe {
     /// Logistic density of scale s = √(π/8) (0.265 β + 1.194 β² + 5.372 β²²), cut off at ±π and normalised again (Chiang
     /// et al. 2016, eqs. 8 and 12). It has a kink opposite its peak.
+    #[default]
     TrimmedLogistic,
     /// Normal density of standard deviation β radians, wound around the circle (d'Eon et al. 2011, section 4.4).
     WrappedGaussian,

@@ -9,13 +9,18 @@
 //! since 1 − cos(θi + θo) is half the bracket. Nothing here overflows or cancels for any v, so neither logarithms nor
 //! a branch at small v are needed.
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use super::FibreAngles;
 
 /// How a roughness βₘ becomes the variance v of the lobe R.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum LongitudinalMapping {
     /// v = (0.726 β + 0.812 β² + 3.7 β²⁰)², β between 0 and 1 (Chiang et al. 2016, eq. 7), chosen by its authors so
     /// that equal steps of β look equal.
+    #[default]
     Chiang,
     /// v = β², β in radians.
     Plain,

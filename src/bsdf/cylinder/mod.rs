@@ -12,8 +12,8 @@
 //! azimuth around the fibre. Light comes from below the surface too: a fibre shines through.
 //!
 //! **Parameters.** `eta` index relative to the outside (1.05 to 3); `beta_m` and `beta_n` roughness along and around the
-//! fibre (0.02 to 1); `sigma_a` absorption for each channel, 1/radius of the fibre (0 to 20 in a fit, any in a call).
-//! A parameter that exists once a channel is called by its wavelength: `sigma_a@645`. A job that says `sigma_a` means all.
+//! fibre (0.02 to 1); `sigma_a` absorption, 1/radius of the fibre (0 to 20 in a fit, any in a call).
+//! `eta` and `sigma_a` have one value for all channels, or one for each where the design says so.
 //!
 //! **What it leaves out.** Scales tilted against the axis, a medulla or pores ([`crate::bsdf::spongy_barb`] has them),
 //! elliptical and conical sections, coherence between paths, polarisation.
@@ -30,7 +30,11 @@ mod near_field;
 mod quadrature;
 mod tabulated;
 
-use super::{Bsdf, Direction, Model};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::channel_parameters::{ChannelParameter, Declarations};
+use super::{Bsdf, Direction, Model, ModelError};
 use crate::parameter::{Parameter, Spread};
 use crate::pigment::{InversionError, solve_decreasing};
 
@@ -116,9 +120,6 @@ pub enum CylinderError {
         /// Number of absorptions.
         sigma_a: usize,
     },
-    /// Channels that no model can be made for.
-    #[error("the wavelengths of a model must be positive numbers, each given once, but {0} nm was found")]
-    Wavelength(f64),
 }
 
 const MOST_INDEX: f64 = 5.0;
@@ -359,83 +360,98 @@ pub(super) fn over_cosine(incoming: &Direction, values: &mut [f64]) {
     }
 }
 
-/// Whether a fibre has one refractive index, or one a channel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FibreIndex {
-    /// One parameter, `eta`.
-    Shared,
-    /// One parameter a channel, `eta@645`.
-    PerChannel,
+/// A fibre as typed in a job.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct CylinderDesign {
+    /// How `beta_m` becomes the width of the lobes.
+    pub mapping: LongitudinalMapping,
+    /// Shape of the lobes around the fibre, and how `beta_n` becomes their width.
+    pub lobe: AzimuthalLobe,
+    /// Parameters that have one value in each channel: `eta`, `sigma_a`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub per_channel: Vec<String>,
 }
 
 /// The cylinder as a model to be fitted: which parameters it has is fixed, their values are not.
 #[derive(Debug, Clone)]
 pub struct CylinderModel {
     channel_count: usize,
-    index: FibreIndex,
     mapping: LongitudinalMapping,
     lobe: AzimuthalLobe,
+    eta: ChannelParameter,
+    beta_m: usize,
+    beta_n: usize,
+    sigma_a: ChannelParameter,
     parameters: Vec<Parameter>,
 }
 
 impl CylinderModel {
-    /// A model for channels at these wavelengths.
-    ///
-    /// Its parameters are `eta` (or one for each channel), `beta_m`, `beta_n`, and `sigma_a` for each channel, in this order.
+    /// The model at these wavelengths (nm, one a channel).
     ///
     /// # Errors
-    /// If a wavelength is not a positive number, or given twice.
-    pub fn new(
-        wavelengths_nm: &[f64],
-        index: FibreIndex,
-        mapping: LongitudinalMapping,
-        lobe: AzimuthalLobe,
-    ) -> Result<Self, CylinderError> {
-        for (channel, &wavelength) in wavelengths_nm.iter().enumerate() {
-            let repeated = wavelengths_nm[..channel].iter().any(|earlier| earlier.to_bits() == wavelength.to_bits());
-            if repeated || !(wavelength > 0.0 && wavelength.is_finite()) {
-                return Err(CylinderError::Wavelength(wavelength));
-            }
-        }
-        let mut parameters = Vec::new();
-        match index {
-            FibreIndex::Shared => parameters.push(index_parameter("eta".to_owned(), "η".to_owned())),
-            FibreIndex::PerChannel => parameters.extend(
-                wavelengths_nm
-                    .iter()
-                    .map(|wavelength| index_parameter(format!("eta@{wavelength}"), format!("η({wavelength} nm)"))),
-            ),
-        }
-        parameters.push(roughness_parameter(
+    /// No wavelengths, senseless ones, or a wrong name in `per_channel`.
+    pub fn new(design: &CylinderDesign, wavelengths_nm: &[f64]) -> Result<Self, ModelError> {
+        let mut declarations = Declarations::new(wavelengths_nm, &design.per_channel)?;
+        let parameter = |name: &str, symbol: &str, unit, [default, lower, upper]: [f64; 3], text: &str| Parameter {
+            name: name.to_owned(),
+            symbol: symbol.to_owned(),
+            unit,
+            default,
+            lower,
+            upper,
+            spread: Spread::Linear,
+            scan_step: None,
+            text: text.to_owned(),
+        };
+        let eta = declarations.spectral(parameter(
+            "eta",
+            "η",
+            "",
+            [1.55, 1.05, 3.0],
+            "refractive index of the fibre relative to what surrounds it",
+        ));
+        let beta_m = declarations.number(parameter(
             "beta_m",
             "β_m",
-            "Roughness along the fibre: how far lobes spread along it",
+            "",
+            [0.3, 0.02, 1.0],
+            "roughness along the fibre: how far lobes spread along it",
         ));
-        parameters.push(roughness_parameter(
+        let beta_n = declarations.number(parameter(
             "beta_n",
             "β_n",
-            "Roughness around the fibre: how far lobes spread around it",
+            "",
+            [0.3, 0.02, 1.0],
+            "roughness around the fibre: how far lobes spread around it",
         ));
-        parameters.extend(wavelengths_nm.iter().map(|&wavelength| absorption_parameter(wavelength)));
-        Ok(Self { channel_count: wavelengths_nm.len(), index, mapping, lobe, parameters })
+        let sigma_a = declarations.spectral(parameter(
+            "sigma_a",
+            "σ_a",
+            "1/radius",
+            [0.2, 0.0, 20.0],
+            "absorption inside the fibre, per radius of it",
+        ));
+        Ok(Self {
+            channel_count: wavelengths_nm.len(),
+            mapping: design.mapping,
+            lobe: design.lobe,
+            eta,
+            beta_m,
+            beta_n,
+            sigma_a,
+            parameters: declarations.finish()?,
+        })
     }
 
     /// The fibre with these parameter values.
     pub(super) fn cylinder(&self, values: &[f64]) -> Cylinder {
-        let index_count = match self.index {
-            FibreIndex::Shared => 1,
-            FibreIndex::PerChannel => self.channel_count,
-        };
-        let (eta, rest) = values.split_at(index_count);
-        let eta = match self.index {
-            FibreIndex::Shared => vec![eta[0]; self.channel_count],
-            FibreIndex::PerChannel => eta.to_vec(),
-        };
+        let channels = 0..self.channel_count;
         Cylinder::from_checked(&CylinderParameters {
-            eta,
-            beta_m: rest[0],
-            beta_n: rest[1],
-            sigma_a: rest[2..].to_vec(),
+            eta: channels.clone().map(|channel| self.eta.value(values, channel)).collect(),
+            sigma_a: channels.map(|channel| self.sigma_a.value(values, channel)).collect(),
+            beta_m: values[self.beta_m],
+            beta_n: values[self.beta_n],
             mapping: self.mapping,
             lobe: self.lobe,
         })
@@ -453,47 +469,5 @@ impl Model for CylinderModel {
 
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
         Box::new(self.cylinder(values))
-    }
-}
-
-fn index_parameter(name: String, symbol: String) -> Parameter {
-    Parameter {
-        name,
-        symbol,
-        unit: "",
-        default: 1.55,
-        lower: 1.05,
-        upper: 3.0,
-        spread: Spread::Linear,
-        scan_step: None,
-        text: "Refractive index of the fibre relative to what surrounds it".to_owned(),
-    }
-}
-
-fn roughness_parameter(name: &str, symbol: &str, text: &str) -> Parameter {
-    Parameter {
-        name: name.to_owned(),
-        symbol: symbol.to_owned(),
-        unit: "",
-        default: 0.3,
-        lower: 0.02,
-        upper: 1.0,
-        spread: Spread::Linear,
-        scan_step: None,
-        text: text.to_owned(),
-    }
-}
-
-fn absorption_parameter(wavelength_nm: f64) -> Parameter {
-    Parameter {
-        name: format!("sigma_a@{wavelength_nm}"),
-        symbol: format!("σ_a({wavelength_nm} nm)"),
-        unit: "1/radius",
-        default: 0.2,
-        lower: 0.0,
-        upper: 20.0,
-        spread: Spread::Linear,
-        scan_step: None,
-        text: "Absorption of the fibre's inside at this wavelength, per radius of the fibre".to_owned(),
     }
 }
