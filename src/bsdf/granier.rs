@@ -1,5 +1,5 @@
-//! A diffuse base under a thin clear film whose two surfaces need not be parallel (Granier and Heidrich 2003; the second
-//! thesis, sections 2.4 and 3.1).
+//! A diffuse base under a thin clear film whose two surfaces need not be parallel (Granier and Heidrich 2003; the
+//! second thesis, sections 2.4 and 3.1).
 //!
 //! ```text
 //! f   = w_s (f_r + f_t + f_Φ) + w_d f_d
@@ -9,11 +9,11 @@
 //! f_d = 1 + 2 cos(4π η d/λ) √(T_d (1 − T_d))                       T_d = (80/21) η/(1 + η)²
 //! ```
 //!
-//! n0 is the film's outer normal, n1 that of its inner surface. `ω_ti` and `ω_to` are ωi and ωo refracted at n0 and point
-//! into the film: `ω_ti = −ωi/η + ((ωi·n0)/η − cosθ_ti) n0`, `cosθ_ti = √(1 − (1 − (ωi·n0)²)/η²)`. F is Schlick's
-//! f + (1 − f)(1 − c)⁵ with f = ((1 − η)/(1 + η))². Equations 2.23 to 2.35, 3.3 and 3.4 with their misprints mended; the
-//! medium outside has index 1. Cosines of the lobes at or below 0 give no light, and so does `f_s` where ωi or ωo lies
-//! behind n0. 0 where either direction is below the horizon of the shading normal, z.
+//! n0 is the film's outer normal, n1 that of its inner surface. `ω_ti` and `ω_to` are ωi and ωo refracted at n0 and
+//! point into the film: `ω_ti = −ωi/η + ((ωi·n0)/η − cosθ_ti) n0`, `cosθ_ti = √(1 − (1 − (ωi·n0)²)/η²)`. F is Schlick's
+//! f + (1 − f)(1 − c)⁵ with f = ((1 − η)/(1 + η))². Equations 2.23 to 2.35, 3.3 and 3.4 with their misprints mended;
+//! the medium outside has index 1. Cosines of the lobes at or below 0 give no light, and so does `f_s` where ωi or ωo
+//! lies behind n0. 0 where either direction is below the horizon of the shading normal, z.
 //!
 //! | parameter | symbol | unit | default | range |
 //! | --- | --- | --- | --- | --- |
@@ -28,10 +28,10 @@
 //!
 //! A `mapped` normal and a texture of thicknesses come with each point of the surface, see [`GranierHeidrich::at`].
 //!
-//! **Not reciprocal, and energy is not conserved.** As printed the weights carry the 1/sr: `f_d = 1` is an albedo of `π w_d`,
-//! and the lobes are not normalised. `normalised` divides `f_d` by π and multiplies the lobes by (e + 2)/2π, which makes
-//! each of them 1 at normal incidence. Largest directional albedo over inclinations of the light from 0 to 89°, at
-//! unit weights, parallel surfaces and η 1.5, with the cosines of both phases equal to 1 and to −1:
+//! **Not reciprocal, and energy is not conserved.** As printed the weights carry the 1/sr: `f_d = 1` is an albedo of
+//! `π w_d`, and the lobes are not normalised. `normalised` divides `f_d` by π and multiplies the lobes by (e + 2)/2π,
+//! which makes each of them 1 at normal incidence. Largest directional albedo over inclinations of the light from 0 to
+//! 89°, at unit weights, parallel surfaces and η 1.5, with the cosines of both phases equal to 1 and to −1:
 //!
 //! | e0 = e1 | printed, 1 | printed, −1 | normalised, 1 | normalised, −1 |
 //! | --- | --- | --- | --- | --- |
@@ -106,8 +106,8 @@ impl Default for Site {
     }
 }
 
-/// The normal that a colour of a normal map stands for: (x, y, z) = 2 (r, g, b) − 1 with colours from 0 to 1, brought to
-/// length 1. None where it does not point out of the surface.
+/// The normal that a colour of a normal map stands for: (x, y, z) = 2 (r, g, b) − 1 with colours from 0 to 1, brought
+/// to length 1. None where it does not point out of the surface.
 pub fn normal_from_rgb(rgb: [f64; 3]) -> Option<Direction> {
     unit_normal(rgb.map(|colour| 2.0 * colour - 1.0))
 }

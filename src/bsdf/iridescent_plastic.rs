@@ -5,9 +5,10 @@
 //! f = f_r + f_t + 2 cos(2Φ) √(f_r f_t),      2Φ = (2π η d/λ) (cosθ_ti + cosθ_to)
 //! ```
 //!
-//! `f_r` and `f_t` are the two terms of [`super::RoughPlastic`], weights included and without a cosine, in every channel with
-//! its own index η and wavelength λ; `θ_ti` and `θ_to` are the inclinations inside the film (equations 3.15 to 3.22; the
-//! medium outside has index 1, so that η is the film's). 0 where either direction is below the horizon.
+//! `f_r` and `f_t` are the two terms of [`super::RoughPlastic`], weights included and without a cosine, in every
+//! channel with its own index η and wavelength λ; `θ_ti` and `θ_to` are the inclinations inside the film (equations
+//! 3.15 to 3.22; the medium outside has index 1, so that η is the film's). 0 where either direction is below the
+//! horizon.
 //!
 //! | parameter | symbol | unit | default | range |
 //! | --- | --- | --- | --- | --- |
@@ -18,8 +19,8 @@
 //! | `diffuse`, shared or per channel | `w_d` | | 0.5 | 0 to 1 |
 //!
 //! Reciprocal, but **energy is not conserved**: a beam is added to diffuse light as if the two were coherent. With unit
-//! weights and η 1.5 the largest directional albedo, over inclinations of the light from 0 to 89°, is for cos 2Φ = 1 and
-//! −1
+//! weights and η 1.5 the largest directional albedo, over inclinations of the light from 0 to 89°, is for cos 2Φ = 1
+//! and −1:
 //!
 //! | α | cos 2Φ = 1 | cos 2Φ = −1 |
 //! | --- | --- | --- |
@@ -28,8 +29,8 @@
 //! | 0.5 | 1.08 | 0.47 |
 //!
 //! Where energy counts, use [`super::CoatedBase`]. `interference` may be `off` (then it is rough plastic to rounding; a
-//! thickness of 0 is not, there the term is `+2√(f_r f_t)`), or one of its bounds. Left out besides: light that goes round
-//! in the film more than once, absorption, polarisation.
+//! thickness of 0 is not, there the term is `+2√(f_r f_t)`), or one of its bounds. Left out besides: light that goes
+//! round in the film more than once, absorption, polarisation.
 
 use std::f64::consts::PI;
 

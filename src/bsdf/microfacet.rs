@@ -5,19 +5,19 @@
 //! f_t = |i·m| |o·m| (1 − F) D G1 G1 η_o² / (|cosθi| |cosθo| |η_i i + η_o o|²)  one on each side
 //! ```
 //!
-//! (equations 20 and 21, without the cosine). i is the direction of the light, o of the viewer, `η_i` and `η_o` the indices
-//! on their sides; m is the microfacet's normal, along i + o or along `η_i i + η_o o`, turned so that m·n > 0, and
-//! `(η_i i·m + η_o o·m)² = |η_i i + η_o o|²`. F is Fresnel's unpolarised reflectance at i·m, D the density of normals and
-//! G1 Smith's masking, of Beckmann's distribution in the exact form with the error function, or of GGX.
+//! (equations 20 and 21, without the cosine). i is the direction of the light, o of the viewer, `η_i` and `η_o` the
+//! indices on their sides; m is the microfacet's normal, along i + o or along `η_i i + η_o o`, turned so that m·n > 0,
+//! and `(η_i i·m + η_o o·m)² = |η_i i + η_o o|²`. F is Fresnel's unpolarised reflectance at i·m, D the density of
+//! normals and G1 Smith's masking, of Beckmann's distribution in the exact form with the error function, or of GGX.
 //!
 //! | parameter | symbol | unit | default | range |
 //! | --- | --- | --- | --- | --- |
 //! | `roughness` | α | | 0.1 | 0.005 to 1 |
 //! | `eta`, shared or per channel: index below over index above | η | | 1.56 (keratin in air) | 1.01 to 3 |
 //!
-//! `f_r(i, o) = f_r(o, i)` and `f_t(i → o)/η_o² = f_t(o → i)/η_i²`. With Beckmann's distribution α is √2 times the standard
-//! deviation of the slopes; GGX's slopes have no standard deviation. Left out: what a second microfacet would catch,
-//! absorption, polarisation.
+//! `f_r(i, o) = f_r(o, i)` and `f_t(i → o)/η_o² = f_t(o → i)/η_i²`. With Beckmann's distribution α is √2 times the
+//! standard deviation of the slopes; GGX's slopes have no standard deviation. Left out: what a second microfacet would
+//! catch, absorption, polarisation.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -5,10 +5,10 @@
 //! ```
 //!
 //! 0 where either direction is below the horizon. The first term is the reflection of [`super::MicrofacetInterface`]
-//! with Beckmann's distribution; in the second T is the rough interface's transmittance from outside and `R_int` the share
-//! of diffuse light that it throws back inside (Jakob's rough plastic in Mitsuba, 2010; the second thesis, section 2.5,
-//! with `R_int` as in [`RoughInterface`](crate::optics::RoughInterface)). `1/(1 − R_int)` is all that bounces
-//! between coat and base; 1/η² is the solid angle that widens when light leaves.
+//! with Beckmann's distribution; in the second T is the rough interface's transmittance from outside and `R_int` the
+//! share of diffuse light that it throws back inside (Jakob's rough plastic in Mitsuba, 2010; the second thesis,
+//! section 2.5, with `R_int` as in [`RoughInterface`](crate::optics::RoughInterface)). `1/(1 − R_int)` is all that
+//! bounces between coat and base; 1/η² is the solid angle that widens when light leaves.
 //!
 //! | parameter | symbol | unit | default | range |
 //! | --- | --- | --- | --- | --- |
@@ -54,8 +54,8 @@ pub enum InternalReflection {
     Linear,
     /// `1 − w_d R_int`: the base's colour acts at every bounce, so that dark colours become darker and purer.
     Nonlinear,
-    /// `1 − R_d` with `R_d = 1 − T_d`, `T_d` the diffuse transmittance from inside, as in the second thesis (equation 2.54):
-    /// what single scattering loses counts as thrown back, and the base is brighter on rough coats.
+    /// `1 − R_d` with `R_d = 1 − T_d`, `T_d` the diffuse transmittance from inside, as in the second thesis (equation
+    /// 2.54): what single scattering loses counts as thrown back, and the base is brighter on rough coats.
     Thesis,
 }
 

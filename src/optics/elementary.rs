@@ -7,7 +7,7 @@
 //! processors and its emulation is slow, and with one rounding an operation all processors give the same bits.
 
 /// Adding and subtracting 1.5 · 2⁵² rounds to the nearest integer, which is then in the low bits of the sum.
-const ROUND: f64 = 6_755_399_441_055_744.0;
+pub(crate) const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// π/2 in two parts (Cody and Waite 1980). The first has 33 bits, so that its product with a whole number up to 2²⁰ is
 /// exact; the second continues it with 53 more.

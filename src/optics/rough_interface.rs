@@ -71,8 +71,8 @@ impl RoughInterface {
         }
     }
 
-    /// Share of the power that crosses the interface, of light whose direction makes the cosine 0 < `cos_theta` ≤ 1 with
-    /// the normal.
+    /// Share of the power that crosses the interface, of light whose direction makes the cosine 0 < `cos_theta` ≤ 1
+    /// with the normal.
     pub fn transmittance(&self, cos_theta: f64) -> f64 {
         self.fraction(Event::Transmission, cos_theta)
     }

@@ -1,4 +1,5 @@
-//! The power fractions of [`super::RoughInterface`] from a shipped table, for models that need them at every evaluation.
+//! The power fractions of [`super::RoughInterface`] from a shipped table, for models that need them at every
+//! evaluation.
 //!
 //! T depends on index, roughness and cosine. A plain grid would need very many nodes, because T bends over a width of
 //! the order of α near the horizon, and from the denser side near the critical angle, which moves with the index. The
@@ -13,8 +14,8 @@
 //! Fresnel reflectance falls, and the roughness in α^(1/3). Catmull–Rom interpolation along all three (Catmull and Rom
 //! 1974), with a parabola at the ends.
 //!
-//! Index and roughness are the same for many directions: [`RoughTransmittance::curve`] interpolates along these two once
-//! and leaves a curve over the cosine.
+//! Index and roughness are the same for many directions: [`RoughTransmittance::curve`] interpolates along these two
+//! once and leaves a curve over the cosine.
 
 use std::ops::RangeInclusive;
 

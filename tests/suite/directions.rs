@@ -39,8 +39,9 @@ pub(super) fn any_direction() -> impl Strategy<Value = Direction> {
     (any_direction_above(), any::<bool>()).prop_map(|(direction, below)| if below { -direction } else { direction })
 }
 
-/// ∫ f |cosθo| dωo over the upper (or lower) half of the sphere, for light in the plane φ = 0 and a model of one channel
-/// that is even in φ: midpoints in both angles. In φ that is exact for smooth periodic functions, in θ of second order.
+/// ∫ f |cosθo| dωo over the upper (or lower) half of the sphere, for light in the plane φ = 0 and a model of one
+/// channel that is even in φ: midpoints in both angles. In φ that is exact for smooth periodic functions, in θ of
+/// second order.
 pub(super) fn directional_albedo(
     bound: &dyn Bsdf,
     incoming: &Direction,

@@ -142,9 +142,9 @@ proptest! {
     }
 }
 
-/// The example of the second thesis (table 3.1), outer normal tilted by 14°, light along z. The outer surface mirrors it
-/// to 28°. Light that enters is at asin(sin 14°/1.5) = 9.28° to n0, so at 4.72° to z; the inner surface mirrors it to
-/// 9.28° + 2 · 4.72° = 18.72° from n0, and it leaves at asin(1.5 sin 18.72°) = 28.77° from n0: at −14.77°.
+/// The example of the second thesis (table 3.1), outer normal tilted by 14°, light along z. The outer surface mirrors
+/// it to 28°. Light that enters is at asin(sin 14°/1.5) = 9.28° to n0, so at 4.72° to z; the inner surface mirrors it
+/// to 9.28° + 2 · 4.72° = 18.72° from n0, and it leaves at asin(1.5 sin 18.72°) = 28.77° from n0: at −14.77°.
 #[test]
 fn tilted_surfaces_part_the_two_reflections() {
     let design = GranierHeidrichDesign {

@@ -1,4 +1,5 @@
-//! The rough dielectric interface: printed values, closed forms of GGX, reciprocity, energy; and the Lambertian surface.
+//! The rough dielectric interface: printed values, closed forms of GGX, reciprocity, energy; and the Lambertian
+//! surface.
 
 use std::f64::consts::PI;
 
@@ -108,7 +109,8 @@ proptest! {
         let index = |direction: &Direction| if direction.z > 0.0 { 1.0 } else { eta };
         let forth = evaluate(&model, &values, &i, &o)[0] / (index(&o) * index(&o));
         let back = evaluate(&model, &values, &o, &i)[0] / (index(&i) * index(&i));
-        // Rounding of the half vector is magnified by the steepness of a narrow lobe: 1/α² times the cosine's last bits.
+        // Rounding of the half vector is magnified by the steepness of a narrow lobe: 1/α² times the cosine's last
+        // bits.
         prop_assert!((forth - back).abs() <= 1e-9 * forth.abs().max(1e-30), "{forth} and {back}");
     }
 
@@ -140,8 +142,8 @@ proptest! {
     }
 }
 
-/// What the scattering function reflects and transmits in all is what the direct quadrature of T and R says, from either
-/// side of the interface: two integrals over different variables.
+/// What the scattering function reflects and transmits in all is what the direct quadrature of T and R says, from
+/// either side of the interface: two integrals over different variables.
 #[test]
 fn interface_scatters_its_power_fractions() {
     let (alpha, eta) = (0.4, 1.5);

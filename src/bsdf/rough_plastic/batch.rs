@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use super::BoundRoughPlastic;
 use crate::bsdf::Direction;
 use crate::optics::TransmittanceCurve;
-use crate::optics::elementary::exp_of_negative;
+use crate::optics::elementary::{ROUND, exp_of_negative};
 use crate::optics::microfacet::Beckmann;
 
 /// Pairs that are worked on together.
@@ -61,9 +61,6 @@ impl DirectionTable {
         std::array::from_fn(|lane| c0[lane] + t * (c1[lane] + t * (c2[lane] + t * c3[lane])))
     }
 }
-
-/// Adding it rounds to the nearest integer, which is then in the lowest bits of the sum.
-const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// A place in the last cell that rounds to no other.
 const LAST_PLACE: f64 = CELL_COUNT - 0.25;
