@@ -49,7 +49,7 @@ const LN_2_LOW: f64 = 1.908_214_929_270_587_7e-10;
 
 /// exp(x) for x ≤ 0, relative error below 4e-16; 0 stands for everything below e^−708.
 ///
-/// Reduction by whole powers of two to |r| ≤ ln 2/2, then 1 + r + r² P(r), with P the Chebyshev series of degree 8 of
+/// Reduction by whole powers of two to |r| ≤ ln 2/2, then 1 + r + r² P(r), with P the Chebyshev series of degree 9 of
 /// (e^r − 1 − r)/r² on that interval (first omitted term 1e-17, computed for this file in 60 digits).
 #[inline(always)]
 pub(crate) fn exp_of_negative(x: f64) -> f64 {
@@ -57,15 +57,16 @@ pub(crate) fn exp_of_negative(x: f64) -> f64 {
     let shifted = inside * std::f64::consts::LOG2_E + ROUND;
     let power = shifted - ROUND;
     let r = (inside - power * LN_2_HIGH) - power * LN_2_LOW;
-    let mut series = 2.762_008_948_195_459e-7;
+    let mut series = 2.510_521_769_568_451_6e-8;
     for coefficient in [
-        2.762_511_702_960_606e-6,
+        2.762_008_948_195_459e-7,
+        2.755_725_539_833_871e-6,
         2.480_152_129_346_386_2e-5,
-        1.984_120_872_948_519e-4,
+        1.984_126_987_482_230_7e-4,
         1.388_888_891_721_558_6e-3,
-        8.333_333_353_731_23e-3,
+        8.333_333_333_326_134e-3,
         4.166_666_666_662_412e-2,
-        1.666_666_666_664_828_6e-1,
+        1.666_666_666_666_667e-1,
         0.500_000_000_000_000_1,
         1.0,
         1.0,
