@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
+use crate::bsdf::cylinder::CylinderDesign;
 use crate::bsdf::{
     Design, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign, RoughPlasticDesign,
 };
@@ -117,6 +118,10 @@ pub enum ModelFile {
     GranierHeidrich(GranierHeidrichDesign),
     /// A surface that is equally bright from everywhere.
     Lambertian(LambertianDesign),
+    /// A dielectric fibre along the tangent, averaged over its width: a barb.
+    Cylinder(CylinderDesign),
+    /// The same fibre with a sponge inside that scatters one band of wavelengths: a blue barb without iridescence.
+    SpongyBarb(CylinderDesign),
     /// The closed law of a single film's peak wavelengths. For peak tables only.
     ThinFilmLaw(ThinFilmLawDesign),
 }

@@ -4,6 +4,8 @@ use std::fmt;
 
 use super::JobError;
 use super::file::ModelFile;
+use crate::bsdf::cylinder::CylinderModel;
+use crate::bsdf::spongy_barb::SpongyBarbModel;
 use crate::bsdf::{
     CoatedBase, GranierHeidrich, IridescentPlastic, Lambertian, MicrofacetInterface, Model, RoughPlastic,
 };
@@ -21,6 +23,12 @@ impl ModelFile {
             Self::IridescentPlastic(design) => Box::new(IridescentPlastic::new(design, wavelengths_nm)?),
             Self::GranierHeidrich(design) => Box::new(GranierHeidrich::new(design, wavelengths_nm)?),
             Self::Lambertian(design) => Box::new(Lambertian::new(design, wavelengths_nm)?),
+            Self::Cylinder(design) => Box::new(CylinderModel::new(design, wavelengths_nm)?),
+            Self::SpongyBarb(design) => {
+                let cylinder = CylinderModel::new(design, wavelengths_nm)?;
+                let barb = SpongyBarbModel::new(cylinder, wavelengths_nm);
+                Box::new(barb.map_err(|error| JobError::key("model", error.to_string()))?)
+            }
             Self::ThinFilmLaw(_) => {
                 let problem = "`thin-film-law` predicts peak wavelengths, not spectra; use `coated-base`";
                 return Err(JobError::key("model.kind", problem));
@@ -37,6 +45,8 @@ impl ModelFile {
             Self::IridescentPlastic(_) => &IRIDESCENT_PLASTIC,
             Self::GranierHeidrich(_) => &GRANIER_HEIDRICH,
             Self::Lambertian(_) => &LAMBERTIAN,
+            Self::Cylinder(_) => &CYLINDER,
+            Self::SpongyBarb(_) => &SPONGY_BARB,
             Self::ThinFilmLaw(_) => &THIN_FILM_LAW,
         }
     }
@@ -71,8 +81,17 @@ const WALTER: (&str, &str) = (
 );
 
 /// Every model, in the order in which `barbule models` lists them.
-const CARDS: [&ModelCard; 7] =
-    [&COATED_BASE, &MICROFACET, &ROUGH_PLASTIC, &IRIDESCENT_PLASTIC, &GRANIER_HEIDRICH, &LAMBERTIAN, &THIN_FILM_LAW];
+const CARDS: [&ModelCard; 9] = [
+    &COATED_BASE,
+    &MICROFACET,
+    &ROUGH_PLASTIC,
+    &IRIDESCENT_PLASTIC,
+    &GRANIER_HEIDRICH,
+    &LAMBERTIAN,
+    &CYLINDER,
+    &SPONGY_BARB,
+    &THIN_FILM_LAW,
+];
 
 const COATED_BASE: ModelCard = ModelCard {
     kind: "coated-base",
@@ -129,6 +148,37 @@ const LAMBERTIAN: ModelCard = ModelCard {
     usage: "Reads spectra at any four angles; the simplest control.",
     example: "kind = \"lambertian\"",
     works: &[],
+};
+
+const FIBRE_WORKS: &[(&str, &str)] = &[
+    (
+        "d'Eon 2011",
+        "d'Eon, E., Francois, G., Hill, M., Letteri, J. and Aubry, J.-M. (2011). An energy-conserving hair reflectance \
+         model. Computer Graphics Forum 30, 1181–1187.",
+    ),
+    (
+        "Chiang 2016",
+        "Chiang, M. J.-Y., Bitterli, B., Tappan, C. and Burley, B. (2016). A practical and controllable hair and fur model \
+         for production path tracing. Computer Graphics Forum 35, 275–283.",
+    ),
+];
+
+const CYLINDER: ModelCard = ModelCard {
+    kind: "cylinder",
+    text: "A dielectric fibre along the tangent, averaged over its width (d'Eon et al. 2011; Chiang et al. 2016).",
+    usage: "Reads spectra at any four angles, azimuths counted from the fibre. `per_channel` gives the parameters that it \
+            names one value a wavelength.",
+    example: "kind = \"cylinder\"",
+    works: FIBRE_WORKS,
+};
+
+const SPONGY_BARB: ModelCard = ModelCard {
+    kind: "spongy-barb",
+    text: "A dielectric fibre along the tangent (d'Eon et al. 2011; Chiang et al. 2016) with a sponge inside that scatters \
+           one band of wavelengths.",
+    usage: "Reads spectra at any four angles, azimuths counted from the fibre.",
+    example: "kind = \"spongy-barb\"",
+    works: FIBRE_WORKS,
 };
 
 const THIN_FILM_LAW: ModelCard = ModelCard {
