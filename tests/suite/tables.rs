@@ -517,7 +517,7 @@ fn a_gigabyte_of_zeros_costs_neither_time_nor_memory() {
 }
 
 #[test]
-fn a_line_without_end_complains() {
+fn a_line_without_end_is_refused() {
     let found = sentence("angle,".repeat(1 << 18), LONG);
     assert!(found.starts_with("table.csv, line 1: the line has 1572864 bytes"), "{found}");
 }
