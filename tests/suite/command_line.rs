@@ -11,7 +11,7 @@ use super::desk::{Desk, FILM, film_with, replaced, shipped};
 /// Checks a job and expects a sentence with these parts.
 #[track_caller]
 fn refused(job: &str, parts: &[&str]) {
-    Desk::with("film.toml", job).barbule("check film.toml").is_refused(parts);
+    Desk::with("film.toml", job).barbule("check film.toml").complains(parts);
 }
 
 #[test]
@@ -27,19 +27,19 @@ fn every_command_shows_an_example() {
 fn a_job_that_is_not_there() {
     let desk = Desk::with("binary.toml", b"\xff\xfe\x00").and("empty.toml", "");
     fs::create_dir(desk.path("folder")).unwrap();
-    desk.barbule("check nosuch.toml").is_refused(&["nosuch.toml: there is no such file", "job.toml in it"]);
-    desk.barbule("fit folder").is_refused(&["folder: this folder has no job.toml"]);
-    desk.barbule("check binary.toml").is_refused(&["binary.toml", "not UTF-8"]);
-    desk.barbule("check empty.toml").is_refused(&["empty.toml", "`title` is missing"]);
+    desk.barbule("check nosuch.toml").complains(&["nosuch.toml: there is no such file", "job.toml in it"]);
+    desk.barbule("fit folder").complains(&["folder: this folder has no job.toml"]);
+    desk.barbule("check binary.toml").complains(&["binary.toml", "not UTF-8"]);
+    desk.barbule("check empty.toml").complains(&["empty.toml", "`title` is missing"]);
 }
 
 #[test]
 fn a_job_of_a_gigabyte_is_not_read() {
     let desk = Desk::empty();
     fs::File::create(desk.path("big.toml")).unwrap().set_len(1 << 30).unwrap();
-    desk.barbule("check big.toml").is_refused(&["big.toml", "1073741824 bytes"]);
+    desk.barbule("check big.toml").complains(&["big.toml", "1073741824 bytes"]);
     fs::rename(desk.path("big.toml"), desk.path("big.csv")).unwrap();
-    desk.barbule("new big.csv").is_refused(&["big.csv", "zero byte"]);
+    desk.barbule("new big.csv").complains(&["big.csv", "zero byte"]);
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn options_that_make_no_sense() {
         ("new film.toml --out film.toml", ["film.toml is there already", "--out"]),
         ("new nosuch.csv", ["nosuch.csv: there is no such file", "correct the path"]),
     ] {
-        desk.barbule(words).is_refused(&parts.map(|part| part.trim_end()));
+        desk.barbule(words).complains(&parts.map(|part| part.trim_end()));
     }
 }
 
@@ -181,7 +181,7 @@ fn a_table_that_is_wrong_is_named_with_its_line() {
         ("angle,peak\n15,560\n", ["peaks.csv, line 1", "did you mean \"peak\""]),
         ("", ["peaks.csv", "empty"]),
     ] {
-        with(table).barbule("check job.toml").is_refused(&parts);
+        with(table).barbule("check job.toml").complains(&parts);
     }
     let law = film_with(
         "kind = \"coated-base\"\nlayers = [{ name = \"film\", material = \"keratin\", thickness_nm = 300 }]\nsubstrate = \"bird_melanin\"",
@@ -193,7 +193,7 @@ fn a_table_that_is_wrong_is_named_with_its_line() {
 #[test]
 fn a_path_in_the_folder_of_measurements_needs_that_folder() {
     let words = format!("check {}", shipped("teal-table"));
-    Desk::empty().barbule_without_data(&words).is_refused(&[
+    Desk::empty().barbule_without_data(&words).complains(&[
         "job.toml, line",
         "data.file",
         "BARBULE_DATA",

@@ -151,7 +151,7 @@ impl Run {
     }
 
     /// Ends with 2, as a user's mistake, says all of these, and neither prints nor writes anything.
-    pub(crate) fn is_refused(self, parts: &[&str]) {
+    pub(crate) fn complains(self, parts: &[&str]) {
         let Self { line, code, out, err, left_alone } = self;
         assert_eq!((code, out.as_str()), (Some(2), ""), "{line}\n{err}");
         for part in parts {
