@@ -1,5 +1,7 @@
 //! Whether the data support a film: how well incidences that were left out are predicted with and without it.
 
+use std::sync::atomic::Ordering;
+
 use super::case::{CheckedCase, Comparison};
 use super::file::{JobFile, ModelFile};
 use super::predict::{Values, predict, solve, values_by_name};
@@ -13,8 +15,8 @@ use crate::number::{minus, with_error};
 /// Fewest incidences that a standard error over them means something for.
 const FEWEST_INCIDENCES: usize = 3;
 
-/// Leaves each incidence out in turn, with the film and without it. None where the model has no film, or the table too
-/// few incidences.
+/// Leaves each incidence out in turn, with the film and without it. None where the model has no film, the table too few
+/// incidences, or the user stopped the fit.
 ///
 /// An information criterion over all readings finds a film almost everywhere, since residuals of spectra are strongly
 /// correlated along wavelength. An incidence that the fit did not see is a better judge.
@@ -25,7 +27,8 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
     };
     let seen = part(table, |index| fitted[index]);
     let incidences_deg = incidences(&seen);
-    if design.layers.is_empty() || incidences_deg.len() < FEWEST_INCIDENCES {
+    let interrupted = || control.interrupt.load(Ordering::Relaxed);
+    if design.layers.is_empty() || incidences_deg.len() < FEWEST_INCIDENCES || interrupted() {
         return Ok(None);
     }
     let with = &case.file;
@@ -45,6 +48,10 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
         without_film.push(prediction_error(&without, &left_out, &found)?);
     }
 
+    // Folds that were cut short judge nothing.
+    if interrupted() {
+        return Ok(None);
+    }
     let gains: Vec<f64> = without_film.iter().zip(&with_film).map(|(without, with)| without - with).collect();
     let (gain, gain_standard_error) = mean_and_standard_error(&gains);
     let same_order = match &thickness {
