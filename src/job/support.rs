@@ -10,7 +10,7 @@ use crate::bsdf::Model;
 use crate::bsdf::{CoatedBase, Design};
 use crate::fit::{Control, Fit};
 use crate::measure::{GonioTable, Spectrum};
-use crate::number::{minus, with_error};
+use crate::number::with_error;
 
 /// Fewest incidences that a standard error over them means something for.
 const FEWEST_INCIDENCES: usize = 3;
@@ -66,17 +66,21 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
     let aicc_without = control_fit.and_then(|fit| fit.goodness.aicc);
     let delta_aicc = best.goodness.aicc.zip(aicc_without).map(|(with, without)| with - without);
     let verdict = if supported { "A film is supported" } else { "No film is supported" };
-    let orders = if same_order { "the same order" } else { "different orders" };
+    let falls = if gain >= 0.0 { "lowers" } else { "raises" };
+    let enough = gain > 2.0 * gain_standard_error;
+    let needed =
+        if enough { "more than the two standard errors needed" } else { "two standard errors lower are needed" };
+    let joined = if enough == same_order { "and" } else { "but" };
+    let orders = if same_order { "of the same order" } else { "not of the same order" };
+    let unit = if seen.spectra.iter().all(|spectrum| spectrum.sigmas.is_some()) {
+        "in units of σ²"
+    } else {
+        "as a share of the mean squared reading"
+    };
     let text = format!(
-        "{verdict}: leaving out one incidence at a time, the film changes the mean squared prediction error by {} \
-         ({}; a fall of more than two standard errors would be needed), and its thickness is of \
-         {orders} of interference in every fold.",
-        minus(&with_error(-gain, Some(gain_standard_error))),
-        if seen.spectra.iter().all(|spectrum| spectrum.sigmas.is_some()) {
-            "in units of σ²"
-        } else {
-            "as a share of the mean squared reading"
-        },
+        "{verdict}: leaving out one incidence at a time, the film {falls} the mean squared prediction error by {} ({unit}; \
+         {needed}), {joined} its thickness is {orders} of interference in every fold.",
+        with_error(gain.abs(), Some(gain_standard_error)),
     );
     Ok(Some(Support {
         incidences_deg,
