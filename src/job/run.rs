@@ -71,7 +71,6 @@ fn spectra_data(file: &JobFile, table: &GonioTable, fitted: &[bool], fit: &Fit) 
         measured: spectrum.values.clone(),
         sigmas: spectrum.sigmas.clone(),
         model,
-        used: Vec::new(),
     });
     Ok(CaseData::Spectra { quantity: table.quantity, spectra: spectra.collect() })
 }
