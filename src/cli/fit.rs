@@ -83,7 +83,7 @@ impl Fit {
         bar.finish_and_clear();
 
         let page = report::write_report(&outcome, &folder)?;
-        let result = serde_json::to_string_pretty(&outcome).context("the result cannot be written as JSON")?;
+        let result = outcome.to_json().context("the result cannot be written as JSON")?;
         report::write_file(&folder.join("result.json"), result.as_bytes())?;
         if let Some(checkpoints) = checkpoints.filter(|_| !INTERRUPTED.load(Ordering::Relaxed)) {
             checkpoints.remove()?;

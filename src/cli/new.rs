@@ -31,7 +31,10 @@ impl New {
         }
         let draft = job::draft(&self.table, &path)?;
         write_file(&path, draft.as_bytes())?;
-        print(&format!("Wrote {0}. Look at the lines marked `guess`, then run: barbule check {0}", path.display()))?;
+        print(&format!(
+            "Wrote {0}. Look at the lines marked `guess` or `FILL IN`, then run: barbule check {0}",
+            path.display()
+        ))?;
         Ok(Ending::Done)
     }
 }

@@ -49,6 +49,9 @@ pub struct Settings {
     pub max_iterations: u64,
     /// Seed of everything random.
     pub seed: u64,
+    /// Whether standard errors grow by √(N/N_eff) where neighbouring residuals err together. Without it they are the
+    /// textbook's for independent readings.
+    pub correlated_errors: bool,
 }
 
 impl Default for Settings {
@@ -60,6 +63,7 @@ impl Default for Settings {
             starts: 32,
             max_iterations: 500,
             seed: 1,
+            correlated_errors: true,
         }
     }
 }
@@ -182,6 +186,8 @@ pub struct Goodness {
     pub sigma_source: SigmaSource,
     /// The factor by which σ was scaled from the residuals, 1 where it is known.
     pub sigma_scale: f64,
+    /// Factor by which standard errors were widened because neighbouring residuals err together; 1 where they do not.
+    pub error_widening: f64,
     /// Akaike's criterion with small-sample correction, on the effective number of readings.
     pub aicc: Option<f64>,
 }

@@ -24,8 +24,9 @@ pub(super) fn summarise(
 ) -> Fit {
     let Survey { minima: found, profiles, .. } = survey;
     let best = &found[0];
-    let goodness = goodness(objective, best);
-    let errors: Vec<Option<Errors>> = found.iter().map(|found| Errors::of(objective, found)).collect();
+    let goodness = goodness(objective, best, settings);
+    let errors: Vec<Option<Errors>> =
+        found.iter().map(|found| Errors::of(objective, found, goodness.error_widening)).collect();
     let minima = minima(objective, &found, &errors, &goodness);
     let names: Vec<String> =
         objective.mapping.free.iter().map(|p| objective.residuals.parameters()[p.index].name.clone()).collect();
@@ -63,7 +64,7 @@ pub(super) fn summarise(
 }
 
 #[expect(clippy::cast_precision_loss, reason = "numbers of rows are far below 2^53")]
-fn goodness(objective: &Objective<'_>, best: &Found) -> Goodness {
+fn goodness(objective: &Objective<'_>, best: &Found, settings: &Settings) -> Goodness {
     let rows = rows(objective, &best.free);
     let readings = &rows[..objective.readings];
     let count = readings.len() as f64;
@@ -89,6 +90,7 @@ fn goodness(objective: &Objective<'_>, best: &Found) -> Goodness {
         reduced_chi_squared: if known && freedom > 0 { Some(chi_squared / freedom as f64) } else { None },
         sigma_source: if known { SigmaSource::Known } else { SigmaSource::Estimated },
         sigma_scale: if known { 1.0 } else { per_freedom.map_or(1.0, f64::sqrt) },
+        error_widening: if settings.correlated_errors { (count / effective).sqrt() } else { 1.0 },
         aicc,
     }
 }
@@ -107,7 +109,7 @@ struct Errors {
 }
 
 impl Errors {
-    fn of(objective: &Objective<'_>, found: &Found) -> Option<Self> {
+    fn of(objective: &Objective<'_>, found: &Found, widening: f64) -> Option<Self> {
         let curvature = found.curvature.as_ref()?;
         let sigma = sigma(objective, found.cost)?;
         let inverse = curvature.inverse(&curvature.inner);
@@ -116,6 +118,7 @@ impl Errors {
         } else {
             curvature.sandwich(objective, &curvature.inner)?
         };
+        let matrix = widening * widening * matrix;
         let size = found.free.len();
         let mut covariance = vec![vec![None; size]; size];
         let known: Vec<bool> = (0..curvature.inner.len()).map(|k| determined(&inverse, k)).collect();
@@ -195,7 +198,12 @@ fn minima(objective: &Objective<'_>, found: &[Found], errors: &[Option<Errors>],
     let likelihood = if objective.residuals.sigma_known() {
         Likelihood::Known
     } else {
-        Likelihood::Unknown { readings: goodness.effective_readings, floor: f64::MIN_POSITIVE }
+        // Fewer readings than twice the parameters could not have determined them, and would turn weights upside down:
+        // integrating over p parameters takes p from the exponent of the residuals' sum of squares.
+        #[expect(clippy::cast_precision_loss, reason = "numbers of readings and parameters are small")]
+        let (all, least) = (goodness.readings as f64, 2.0 * goodness.free_parameters as f64);
+        let readings = goodness.effective_readings.max(least.min(all));
+        Likelihood::Unknown { readings, floor: f64::MIN_POSITIVE }
     };
     let ln_weight = |found: &Found| {
         found.curvature.as_ref().map_or(f64::NEG_INFINITY, |curvature| {
@@ -248,7 +256,12 @@ fn estimates(
     open: &[OpenDirection],
 ) -> Vec<Estimate> {
     #[expect(clippy::cast_precision_loss, reason = "degrees of freedom are far below 2^53")]
-    let freedom = (goodness.sigma_source == SigmaSource::Estimated).then(|| goodness.degrees_of_freedom.max(1) as f64);
+    let freedom = (goodness.sigma_source == SigmaSource::Estimated).then(|| {
+        // Readings that err together leave fewer degrees of freedom.
+        let lost =
+            if goodness.error_widening > 1.0 { goodness.readings as f64 - goodness.effective_readings } else { 0.0 };
+        (goodness.degrees_of_freedom as f64 - lost).max(1.0)
+    });
     let quantile = central_95(freedom);
     let parameters = objective.residuals.parameters();
     let estimate = |index: usize| {
@@ -263,7 +276,7 @@ fn estimates(
             Role::Tied { .. } => ("tied", None, [parameter.lower, parameter.upper]),
         };
         let interval_95 = match (at_bound, position) {
-            (Some(side), Some(j)) => one_sided(objective, best, j, side, range),
+            (Some(side), Some(j)) => one_sided(objective, best, j, side, range, goodness.error_widening),
             _ => standard_error
                 .map(|error| [(value - quantile * error).max(range[0]), (value + quantile * error).min(range[1])]),
         };
@@ -287,9 +300,16 @@ fn estimates(
 }
 
 /// The interval from a bound inwards that holds 95 % of the likelihood.
-fn one_sided(objective: &Objective<'_>, best: &Found, j: usize, side: Bound, range: [f64; 2]) -> Option<[f64; 2]> {
+fn one_sided(
+    objective: &Objective<'_>,
+    best: &Found,
+    j: usize,
+    side: Bound,
+    range: [f64; 2],
+    widening: f64,
+) -> Option<[f64; 2]> {
     let curvature = best.curvature.as_ref()?;
-    let sigma = sigma(objective, best.cost)?;
+    let sigma = widening * sigma(objective, best.cost)?;
     let mut positions = curvature.inner.clone();
     positions.push(j);
     let inverse = curvature.inverse(&positions);

@@ -65,14 +65,25 @@ pub fn misfit(goodness: &Goodness) -> Vec<String> {
             ));
         }
     }
-    let share = readings / goodness.effective_readings;
-    if share > 2.0 {
+    if readings / goodness.effective_readings > 2.0 {
+        let widened = if goodness.error_widening > 1.0 {
+            format!("standard errors have been widened by {:.1} for it", goodness.error_widening)
+        } else {
+            "standard errors do not allow for it".to_owned()
+        };
         sentences.push(format!(
-            "Neighbouring residuals err together: {} readings tell about as much as {:.0} independent ones would, so that \
-             true errors are nearer to {:.1} times the standard errors given.",
-            goodness.readings,
-            goodness.effective_readings,
-            share.sqrt()
+            "Neighbouring residuals err together: {} readings tell about as much as {:.0} independent ones would, and \
+             {widened}.",
+            goodness.readings, goodness.effective_readings
+        ));
+    }
+    #[expect(clippy::cast_precision_loss, reason = "a number of parameters is small")]
+    let free = goodness.free_parameters as f64;
+    if goodness.effective_readings <= free {
+        sentences.push(format!(
+            "That is no more than the {} free parameters: this model cannot be judged by these readings, and no error or \
+             weight should be relied on.",
+            goodness.free_parameters
         ));
     }
     sentences

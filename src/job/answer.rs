@@ -1,6 +1,6 @@
 //! The answer in a sentence or two: value ± error, its rivals, what stays open.
 
-use super::outcome::{Case, CaseData, Outcome, ThicknessOrder};
+use super::outcome::{Case, CaseData, Outcome, PeakFit, ThicknessOrder};
 use crate::fit::{Bound, Estimate, Fit, Minimum, StopReason, misfit};
 use crate::number::{minus, with_error};
 
@@ -22,8 +22,9 @@ pub(super) fn job_answer(outcome: &Outcome) -> String {
     };
     let assumed = if others.is_empty() { String::new() } else { format!("Assuming {}: ", main.name) };
     sentences.push(format!("{assumed}{}", main.answer));
-    sentences.extend(others.iter().map(|case| format!("Assuming {}: {}", case.name, values_sentence(case))));
-    sentences.join(" ")
+    let main = sentences.join(" ");
+    let others = others.iter().map(|case| format!("Assuming {}: {}", case.name, values_sentence(case)));
+    std::iter::once(main).chain(others).collect::<Vec<_>>().join("\n")
 }
 
 /// The answer of one case.
@@ -34,7 +35,7 @@ pub(super) fn case_answer(case: &Case) -> String {
         let verdict = if support.supported {
             "The data support a film."
         } else {
-            "The data do not support a film: the thickness below means nothing."
+            "The data do not support a film: the thickness that follows means nothing."
         };
         sentences.push(verdict.to_owned());
     }
@@ -42,7 +43,9 @@ pub(super) fn case_answer(case: &Case) -> String {
     if case.orders.len() < 2 {
         sentences.extend(rivals(fit));
     }
+    sentences.extend(misfit_size(case));
     sentences.extend(held_out(case));
+    sentences.extend(reddening(case));
     sentences.extend(misfit(&fit.goodness));
     if !fit.open_directions.is_empty() {
         let open: Vec<&str> = fit.open_directions.iter().map(|direction| direction.text.as_str()).collect();
@@ -60,44 +63,118 @@ pub(super) fn case_answer(case: &Case) -> String {
 
 /// The fitted values, or every order's where the readings do not tell them apart.
 fn values_sentence(case: &Case) -> String {
-    let [first, .., last] = case.orders.as_slice() else { return main_values(&case.fit) };
-    let text = |order: &ThicknessOrder| with_error(order.thickness_nm, order.standard_error_nm);
+    let (first, last) = match case.orders.as_slice() {
+        [] => return main_values(&case.fit),
+        [only] => {
+            let values = main_values(&case.fit);
+            return format!(
+                "{values} Peaks alone do not give the order of interference: that it is {} here is the doing of the bounds.",
+                only.order
+            );
+        }
+        [first, .., last] => (first, last),
+    };
+    let text = |order: &ThicknessOrder| rounded(order.thickness_nm, order.standard_error_nm);
     // The law gives all orders one index; where a full model does not, the range says so.
-    let index = if (first.index - last.index).abs() < first.index_standard_error.unwrap_or(0.0) {
-        with_error(first.index, first.index_standard_error)
+    let spread = first.index_standard_error.unwrap_or(0.0).max(1e-3 * first.index);
+    let index = if (first.index - last.index).abs() < spread {
+        rounded(first.index, first.index_standard_error)
     } else {
         format!("{:.3} to {:.3}", first.index.min(last.index), first.index.max(last.index))
     };
     let thicknesses: Vec<String> = case.orders.iter().map(text).collect();
+    let orders: Vec<String> = case.orders.iter().map(|order| order.order.to_string()).collect();
+    let bounds = case.fit.estimates.iter().find(|estimate| estimate.name.ends_with(".thickness_nm"));
+    let bounds = bounds
+        .and_then(|estimate| estimate.bounds)
+        .map_or_else(String::new, |[lower, upper]| format!(", within the bounds {lower} to {upper} nm"));
     format!(
-        "n = {index}; peaks alone do not give the order of interference, so that the thickness is one of {} nm (orders {} to {}).",
+        "n = {index}; peaks alone do not give the order of interference, so that the thickness is one of {} nm (orders {}\
+         {bounds}).",
         thicknesses.join(", "),
-        first.order,
-        last.order
+        orders.join(", "),
     )
 }
+
+/// A value with its error; an error that is only rounding is left out.
+fn rounded(value: f64, error: Option<f64>) -> String {
+    with_error(value, error.filter(|error| *error > 1e-7 * value.abs()))
+}
+
+/// How far the model is from the readings, in their own unit.
+fn misfit_size(case: &Case) -> Option<String> {
+    let rms = case.fit.minima.first()?.rms;
+    match &case.data {
+        CaseData::Peaks { peaks, .. } if peaks.iter().all(|peak| peak.sigma_nm.is_none()) => {
+            Some(format!("The model misses the fitted peaks by {rms:.2} nm (rms)."))
+        }
+        CaseData::Spectra { spectra, .. } if spectra.iter().all(|spectrum| spectrum.sigmas.is_none()) => {
+            let fitted = spectra.iter().filter(|spectrum| spectrum.fitted).flat_map(|spectrum| &spectrum.measured);
+            let (squares, count) = fitted.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
+            let typical = (squares / count).sqrt();
+            (typical > 0.0).then(|| {
+                format!("The model misses the readings by {} (rms, of their own rms).", percent(rms / typical))
+            })
+        }
+        _ => None,
+    }
+}
+
+/// Peaks that move to longer wavelengths as the angle grows, which no film does.
+fn reddening(case: &Case) -> Option<String> {
+    let CaseData::Peaks { peaks, .. } = &case.data else { return None };
+    let angle = |peak: &PeakFit| peak.geometry.theta_i_deg + peak.geometry.theta_o_deg;
+    let first = peaks.iter().min_by(|a, b| angle(a).total_cmp(&angle(b)))?;
+    let last = peaks.iter().max_by(|a, b| angle(a).total_cmp(&angle(b)))?;
+    (last.measured_nm > first.measured_nm && angle(last) > angle(first)).then(|| {
+        "Peaks move to longer wavelengths with angle, which a film's do not: are the angles counted from the surface \
+         instead of its normal?"
+            .to_owned()
+    })
+}
+
+/// A held-out peak that is missed by more than this many times the misfit of the fitted ones tells against the model.
+const BEYOND: f64 = 3.0;
 
 /// How well peaks that the fit did not see are predicted.
 fn held_out(case: &Case) -> Option<String> {
     let CaseData::Peaks { peaks, .. } = &case.data else { return None };
-    let errors: Vec<String> = peaks
-        .iter()
-        .filter(|peak| !peak.fitted)
-        .map(|peak| {
-            peak.model_nm.map_or_else(|| "no peak".into(), |nm| minus(&format!("{:+.1}", peak.measured_nm - nm)))
-        })
-        .collect();
-    let what = if errors.len() == 1 { "peak that was held out lies" } else { "peaks that were held out lie" };
-    (!errors.is_empty()).then(|| format!("The {what} {} nm from the prediction.", list(&errors)))
+    let held: Vec<&PeakFit> = peaks.iter().filter(|peak| !peak.fitted).collect();
+    let error = |peak: &&PeakFit| peak.model_nm.map(|nm| nm - peak.measured_nm);
+    let text = |peak: &&PeakFit| error(peak).map_or_else(|| "no peak".into(), |nm| minus(&format!("{nm:+.1}")));
+    let errors: Vec<String> = held.iter().map(text).collect();
+    if errors.is_empty() {
+        return None;
+    }
+    let what = if errors.len() == 1 { "peak that was" } else { "peaks that were" };
+    let sentence = format!("Model minus measured at the {what} held out: {} nm.", list(&errors));
+    let largest = held.iter().filter_map(error).fold(0.0, |most: f64, nm| most.max(nm.abs()));
+    let usual = peaks.iter().filter(|peak| peak.fitted).filter_map(|peak| error(&peak)).map(|nm| nm * nm);
+    let (sum, count) = usual.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+    let rms = f64::sqrt(sum / count);
+    if largest > BEYOND * rms && rms > 0.0 {
+        let times = largest / rms;
+        return Some(format!(
+            "{sentence} That is up to {times:.0} times the misfit of the fitted ones: the model fails there, and the \
+             errors given hold only if it is right where it was fitted."
+        ));
+    }
+    Some(sentence)
 }
 
-/// The physical parameters first, the instrument's last; a few of them.
+/// The physical parameters, a few of them; the instrument's only where nothing else is free.
 fn main_values(fit: &Fit) -> String {
     let mut free: Vec<&Estimate> = fit.estimates.iter().filter(|estimate| estimate.role == "free").collect();
+    if free.iter().any(|estimate| importance(&estimate.name) < INSTRUMENT) {
+        free.retain(|estimate| importance(&estimate.name) < INSTRUMENT);
+    }
     free.sort_by_key(|estimate| importance(&estimate.name));
     let named: Vec<String> = free.iter().take(MOST_NAMED).map(|estimate| value_text(estimate)).collect();
     format!("{}.", list(&named))
 }
+
+/// Rank of gains and offsets in [`importance`].
+const INSTRUMENT: u32 = 3;
 
 fn importance(name: &str) -> u32 {
     if name.ends_with(".thickness_nm") {
@@ -105,7 +182,7 @@ fn importance(name: &str) -> u32 {
     } else if name.contains(".index") || name.contains(".cauchy") || name.contains(".extinction") {
         1
     } else if name.starts_with("gain") || name.starts_with("offset") {
-        3
+        INSTRUMENT
     } else {
         2
     }
@@ -114,14 +191,18 @@ fn importance(name: &str) -> u32 {
 fn value_text(estimate: &Estimate) -> String {
     let unit = if estimate.unit.is_empty() { String::new() } else { format!(" {}", estimate.unit) };
     let name = format!("{} ({})", estimate.symbol, estimate.name);
-    match (estimate.at_bound, estimate.interval_95) {
-        (Some(Bound::Lower), Some([_, upper])) => return format!("{name} below {upper:.4}{unit} (95 %)"),
-        (Some(Bound::Upper), Some([lower, _])) => return format!("{name} above {lower:.4}{unit} (95 %)"),
-        (Some(_), None) => return format!("{name} at its bound {:.4}{unit}", estimate.value),
-        (None, _) => {}
+    if let Some(side) = estimate.at_bound {
+        let side = match side {
+            Bound::Lower => "lower",
+            Bound::Upper => "upper",
+        };
+        return format!(
+            "{name} at its {side} bound {}{unit} (widen it, or doubt the model)",
+            rounded(estimate.value, None)
+        );
     }
     match estimate.standard_error {
-        Some(error) if !estimate.open => format!("{name} = {}{unit}", with_error(estimate.value, Some(error))),
+        Some(error) if !estimate.open => format!("{name} = {}{unit}", rounded(estimate.value, Some(error))),
         _ => format!("{name} near {:.4}{unit}, not determined", estimate.value),
     }
 }

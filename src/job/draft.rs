@@ -14,8 +14,8 @@ pub fn draft(table: &Path, job_path: &Path) -> Result<String, JobError> {
     let layout =
         guess.commented_toml("data.layout").map_err(|error| JobError::key("data.layout", error.to_string()))?;
     Ok(format!(
-        "# A job for {name}. Look at every line marked as a guess or to be filled in, then run `barbule check` on this\n\
-         # file. All keys and their meaning stand in data-schema/job.schema.json; `barbule models` lists the models.\n\n\
+        "# A job for {name}. Look at every line marked `guess` or `FILL IN`, then run `barbule check` on this file.\n\
+         # `barbule schema` writes what every key means; `barbule models` lists the models.\n\n\
          title = {}\n\
          about = \"\"  # what was measured, by whom, and how: the report prints it\n\n\
          [data]\n\
@@ -69,7 +69,7 @@ fn sections(layout: &TableLayout) -> (String, &'static str) {
                  [model]\n\
                  kind = \"coated-base\"\n\
                  layers = [{ name = \"film\", material = \"keratin\", thickness_nm = 300 }]\n\
-                 substrate = \"bird melanin\"\n\n\
+                 substrate = \"bird_melanin\"\n\n\
                  # guess: which parameters are free, and between which bounds\n\
                  [parameters]\n\
                  \"film.thickness_nm\" = { lower = 50, upper = 1500 }\n\

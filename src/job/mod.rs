@@ -7,6 +7,7 @@ mod draft;
 mod error;
 mod file;
 mod film_peaks;
+mod json;
 mod load;
 mod model_note;
 mod models;

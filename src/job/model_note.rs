@@ -12,14 +12,18 @@ pub(super) fn model_note(file: &JobFile) -> Result<ModelNote, JobError> {
     let note = match &file.model {
         ModelFile::ThinFilmLaw(design) => {
             let law = match design.phase_jumps {
-                PhaseJumps::Both => "2 d √(n² − sin²θ) = m λ, both reflections of the film turning the phase alike",
-                PhaseJumps::One => "2 d √(n² − sin²θ) = (m − ½) λ, one reflection of the film turning the phase",
+                PhaseJumps::Both => {
+                    "2 d √(n² − sin²θ) = m λ, as for a film on a base of higher index, where both reflections turn the phase"
+                }
+                PhaseJumps::One => {
+                    "2 d √(n² − sin²θ) = (m − ½) λ, as for a film on a base of lower index, where one reflection turns the phase"
+                }
             };
             ModelNote {
                 kind: card.kind.to_owned(),
                 text: format!(
                     "Peak wavelengths λ at inclination θ were fitted by the law of a single film of thickness d and \
-                     constant refractive index n in air, {law} (Born & Wolf 1999). The law leaves out absorption, \
+                     constant refractive index n under air, {law} (Born & Wolf 1999). The law leaves out absorption, \
                      dispersion and the dependence of a reflection's phase on wavelength."
                 ),
                 materials: Vec::new(),

@@ -47,6 +47,13 @@ fn run_case(case: &CheckedCase, control: &Control) -> Result<Case, JobError> {
             (peaks_data(&case.file, problem, table, fitted, &found)?, thickness_orders(problem, &found))
         }
     };
+    let mut found = found;
+    if orders.len() > 1 {
+        // One thickness of several that fit alike is no answer.
+        for estimate in found.estimates.iter_mut().filter(|estimate| estimate.name.ends_with(".thickness_nm")) {
+            estimate.open = true;
+        }
+    }
     let mut result = Case {
         name: case.file.case.clone(),
         text: case.file.assumes.clone(),

@@ -1,5 +1,7 @@
 //! Whether the data support a film: how well incidences that were left out are predicted with and without it.
 
+use std::sync::atomic::Ordering;
+
 use super::case::{CheckedCase, Comparison};
 use super::file::{JobFile, ModelFile};
 use super::predict::{predict, solve};
@@ -9,13 +11,13 @@ use crate::bsdf::Model;
 use crate::bsdf::{CoatedBase, Design};
 use crate::fit::{Control, Fit};
 use crate::measure::{GonioTable, Spectrum};
-use crate::number::{minus, with_error};
+use crate::number::with_error;
 
 /// Fewest incidences that a standard error over them means something for.
 const FEWEST_INCIDENCES: usize = 3;
 
-/// Leaves each incidence out in turn, with the film and without it. None where the model has no film, or the table too
-/// few incidences.
+/// Leaves each incidence out in turn, with the film and without it. None where the model has no film, the table too few
+/// incidences, or the user stopped the fit.
 ///
 /// An information criterion over all readings finds a film almost everywhere, since residuals of spectra are strongly
 /// correlated along wavelength. An incidence that the fit did not see is a better judge.
@@ -26,7 +28,8 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
     };
     let seen = part(table, |index| fitted[index]);
     let incidences_deg = incidences(&seen);
-    if design.layers.is_empty() || incidences_deg.len() < FEWEST_INCIDENCES {
+    let interrupted = || control.interrupt.load(Ordering::Relaxed);
+    if design.layers.is_empty() || incidences_deg.len() < FEWEST_INCIDENCES || interrupted() {
         return Ok(None);
     }
     let with = &case.file;
@@ -46,6 +49,10 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
         without_film.push(prediction_error(&without, &left_out, &found)?);
     }
 
+    // Folds that were cut short judge nothing.
+    if interrupted() {
+        return Ok(None);
+    }
     let gains: Vec<f64> = without_film.iter().zip(&with_film).map(|(without, with)| without - with).collect();
     let (gain, gain_standard_error) = mean_and_standard_error(&gains);
     let same_order = match &thickness {
@@ -60,17 +67,21 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
     let aicc_without = control_fit.and_then(|fit| fit.goodness.aicc);
     let delta_aicc = best.goodness.aicc.zip(aicc_without).map(|(with, without)| with - without);
     let verdict = if supported { "A film is supported" } else { "No film is supported" };
-    let orders = if same_order { "the same order" } else { "different orders" };
+    let falls = if gain >= 0.0 { "lowers" } else { "raises" };
+    let enough = gain > 2.0 * gain_standard_error;
+    let needed =
+        if enough { "more than the two standard errors needed" } else { "two standard errors lower are needed" };
+    let joined = if enough == same_order { "and" } else { "but" };
+    let orders = if same_order { "of the same order" } else { "not of the same order" };
+    let unit = if seen.spectra.iter().all(|spectrum| spectrum.sigmas.is_some()) {
+        "in units of σ²"
+    } else {
+        "as a share of the mean squared reading"
+    };
     let text = format!(
-        "{verdict}: leaving out one incidence at a time, the film changes the mean squared prediction error by {} \
-         ({}; a fall of more than two standard errors would be needed), and its thickness is of \
-         {orders} of interference in every fold.",
-        minus(&with_error(-gain, Some(gain_standard_error))),
-        if seen.spectra.iter().all(|spectrum| spectrum.sigmas.is_some()) {
-            "in units of σ²"
-        } else {
-            "as a share of the mean squared reading"
-        },
+        "{verdict}: leaving out one incidence at a time, the film {falls} the mean squared prediction error by {} ({unit}; \
+         {needed}), {joined} its thickness is {orders} of interference in every fold.",
+        with_error(gain.abs(), Some(gain_standard_error)),
     );
     Ok(Some(Support {
         incidences_deg,

@@ -178,7 +178,8 @@ fn solve(problem: &Problem, starts: &[f64]) -> Fit {
         prior: None,
     };
     let assignments: Vec<Assignment> = starts.iter().map(free).collect();
-    let settings = Settings { starts: 1, ..Settings::default() };
+    // The certified standard deviations are the textbook's, for independent readings.
+    let settings = Settings { starts: 1, correlated_errors: false, ..Settings::default() };
     let interrupt = AtomicBool::new(false);
     let control = Control { interrupt: &interrupt, progress: &|_, _| {}, checkpoint: None };
     fit(problem, &assignments, &settings, &control).unwrap()
