@@ -7,8 +7,9 @@ use super::{JobError, JobFile};
 use crate::fit::{Control, ExpressionError, Fit, FitError, Residuals, first_values, fit, parse_tie};
 use crate::measure::{Calibration, GonioTable, Spectrum};
 
-/// Fits a job's model to these spectra. What the job says of parameters that are not there any more (those of a film that
-/// was taken away, the gain of a spectrum that was left out) is passed over, ties to them too. No fit where nothing is free.
+/// Fits a job's model to these spectra. What the job says of parameters that are not there any more (those of a film
+/// that was taken away, the gain of a spectrum that was left out) is passed over, ties to them too. No fit where nothing
+/// is free.
 pub(super) fn solve(file: &JobFile, table: &GonioTable, control: &Control) -> Result<(Values, Option<Fit>), JobError> {
     let problem = spectra_problem(file, table, &vec![true; table.spectra.len()])?;
     let declared = problem.parameters();
