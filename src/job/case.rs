@@ -44,6 +44,19 @@ impl Comparison {
             Self::Peaks(_, _, problem) => problem,
         }
     }
+
+    /// Shortest and longest wavelength of all readings, nm.
+    pub(super) fn wavelengths_nm(&self) -> [f64; 2] {
+        match self {
+            Self::Spectra(table, ..) => extent(table.spectra.iter().flat_map(|s| s.wavelengths_nm.iter().copied())),
+            Self::Peaks(table, ..) => extent(table.readings.iter().map(|reading| reading.wavelength_nm)),
+        }
+    }
+}
+
+/// Smallest and largest of some numbers.
+pub(super) fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
 /// The readings of a job's data section and the file they came from.

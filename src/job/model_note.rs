@@ -1,13 +1,15 @@
 //! What a methods section says of a case's model and instrument.
 
+use super::JobError;
+use super::case::CheckedCase;
 use super::file::ModelFile;
 use super::outcome::ModelNote;
-use super::{JobError, JobFile};
 use crate::bsdf::CoatedBase;
 use crate::measure::{Calibration, Instrument, PhaseJumps};
 
 /// Sentences, materials and works to cite.
-pub(super) fn model_note(file: &JobFile) -> Result<ModelNote, JobError> {
+pub(super) fn model_note(case: &CheckedCase) -> Result<ModelNote, JobError> {
+    let file = &case.file;
     let card = file.model.card();
     let (text, materials, references) = match &file.model {
         ModelFile::ThinFilmLaw(design) => {
@@ -27,8 +29,8 @@ pub(super) fn model_note(file: &JobFile) -> Result<ModelNote, JobError> {
             (text, Vec::new(), card.references())
         }
         ModelFile::CoatedBase(design) => {
-            // What is described does not hang on the wavelength.
-            let described = CoatedBase::new(design, &[500.0])?.describe();
+            // The ends of the readings say which materials are used beyond what is known of them.
+            let described = CoatedBase::new(design, &case.comparison.wavelengths_nm())?.describe();
             (described.text, described.materials, described.references)
         }
         _ => (card.text.to_owned(), Vec::new(), card.references()),

@@ -98,6 +98,18 @@ fn a_tie_to_the_film_does_not_keep_it_from_being_judged() {
     assert!(desk.result("film")["cases"][0]["support"]["supported"].is_boolean());
 }
 
+/// Materials were described at 500 nm: never beyond what is known of them, and not at all where a table ends before.
+#[test]
+fn a_material_is_described_where_it_is_used() {
+    let red = film_with("[400, 700]", "[620, 700]");
+    let red = replaced(&red, "\"bird_melanin\"", "{ name = \"own\", table = [[620, 1.7, 0.1], [700, 1.7, 0.1]] }");
+    let desk = Desk::with("film.toml", red);
+    desk.barbule("fit film.toml --out film").succeeds();
+    let keratin = desk.result("film")["cases"][0]["model"]["materials"][0].clone();
+    assert_eq!(keratin["name"], "keratin");
+    assert!(keratin["text"].as_str().unwrap().contains("beyond it, an extrapolation"), "{keratin}");
+}
+
 #[test]
 fn a_new_job_for_peaks_passes_its_check() {
     let peaks = fs::read_to_string(shipped("teal-peaks/peaks.csv")).unwrap();
