@@ -1,12 +1,14 @@
 //! Barbule fits a physical model of how a feather looks to measurements of real feathers, and shows how good the fit is.
 //!
-//! The rooms, from the bottom up: [`optics`], [`pigment`] → [`bsdf`] → [`measure`] → [`fit`] → [`job`] → [`report`]. Arrows point one
-//! way. `fit` knows nothing of feathers; `job` is where a measurement, a model and the engine meet.
+//! The rooms, from the bottom up: [`optics`] and [`pigment`], [`bsdf`], [`measure`], [`job`], [`report`]; each may use what
+//! stands before it. [`fit`] stands beside them on [`parameter`] alone and knows nothing of feathers; `job` is where a
+//! measurement, a model and the engine meet.
 
 pub mod bsdf;
 pub mod fit;
 pub mod job;
 pub mod measure;
+mod nearest;
 mod number;
 pub mod optics;
 pub mod parameter;

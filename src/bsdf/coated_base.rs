@@ -9,8 +9,8 @@
 //! arrives. Without it the model never reflects more than it receives.
 //!
 //! Under a clear coat of index n both directions are refracted into the coat first, R is that of the layers in the coat,
-//! and the result is T(θi) T(θo)/n² times the value inside, T being the coat's Fresnel transmittance. The gloss of the coat's own surface and
-//! light that the coat turns back to the layers are left out.
+//! and the result is T(θi) T(θo)/n² times the value inside, T being the coat's Fresnel transmittance. The gloss of the
+//! coat's own surface and light that the coat turns back to the layers are left out.
 
 mod base;
 mod description;
@@ -25,6 +25,7 @@ use std::f64::consts::PI;
 use self::base::Base;
 use self::design::check_name;
 use self::variable_material::{Channels, VariableMaterial};
+use super::beckmann_lobe::{HalfVector, lobe};
 use super::{Bsdf, Direction, Model, ModelError};
 use crate::optics::microfacet::Beckmann;
 use crate::optics::{Arrangement, LayeredMedium, fresnel};
@@ -178,18 +179,10 @@ impl Bsdf for BoundCoatedBase<'_> {
 impl BoundCoatedBase<'_> {
     /// `scale` · f for directions in the medium of index `front` that the layers lie in, both above the horizon.
     ///
-    /// Only operations in which the two directions commute are used, so that reciprocity is exact.
     fn evaluate_layers(&self, front: f64, incoming: &Direction, outgoing: &Direction, scale: f64, values: &mut [f64]) {
-        let sum = incoming + outgoing;
-        let length = sum.norm();
-        // For unit vectors the half vector h = sum/|sum| meets both at cosθ = |sum|/2.
-        let cos_half = sum.z / length;
-        let cos_facet = (0.5 * length).min(1.0);
-
-        let visible = self.surface.visible_share(incoming.z) * self.surface.visible_share(outgoing.z);
-        let lobe = self.surface.density(cos_half) * visible / (4.0 * (incoming.z * outgoing.z));
-
-        self.medium.reflectance(front, cos_facet, values);
+        let half = HalfVector::between(incoming, outgoing);
+        let lobe = lobe(&self.surface, &half, incoming, outgoing);
+        self.medium.reflectance(front, half.cos_facet, values);
         for (value, diffuse) in values.iter_mut().zip(&self.diffuse) {
             *value = scale * (lobe * *value + diffuse);
         }

@@ -37,9 +37,10 @@ use std::f64::consts::PI;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::beckmann_lobe::{HalfVector, lobe};
 use super::channel_parameters::{ChannelParameter, Declarations};
 use super::interference::Interference;
-use super::rough_plastic::{self, HalfVector, InternalReflection};
+use super::rough_plastic::{self, InternalReflection};
 use super::{Bsdf, Direction, Model, ModelError};
 use crate::optics::elementary::sin_cos;
 use crate::optics::microfacet::Beckmann;
@@ -167,7 +168,7 @@ impl Bsdf for BoundIridescentPlastic {
             return;
         }
         let half = HalfVector::between(incoming, outgoing);
-        let lobe = rough_plastic::lobe(&self.coat, &half, incoming, outgoing);
+        let lobe = lobe(&self.coat, &half, incoming, outgoing);
         pulp::Arch::new().dispatch(Channels {
             film: self,
             incoming,

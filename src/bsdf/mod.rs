@@ -5,6 +5,7 @@
 //! wavelengths alone is done when the model is made, work that depends on the parameters when it is bound, and only
 //! the rest for each pair of directions. The loop over channels is the innermost one and runs over contiguous memory.
 
+mod beckmann_lobe;
 mod channel_parameters;
 mod coated_base;
 pub mod cylinder;

@@ -31,8 +31,8 @@ const SIGMA_ROUNDS: usize = 20;
 ///
 /// # Errors
 ///
-/// What only the user can mend: a checkpoint of another fit, contradictory bounds, a start outside of them, a tie to a tied parameter, nothing free,
-/// too few readings, a setting out of range, or a model that is finite at no start.
+/// What only the user can mend: a checkpoint of another fit, contradictory bounds, a start outside of them, a tie to a
+/// tied parameter, nothing free, too few readings, a setting out of range, or a model that is finite at no start.
 pub fn fit(
     residuals: &dyn Residuals,
     assignments: &[Assignment],

@@ -25,15 +25,15 @@ mod step;
 mod summary;
 mod warnings;
 
-pub use assignment::{Assignment, Prior, Role};
+pub use assignment::{Assignment, Prior, Role, first_values};
 pub use checkpoint::{CheckpointError, Checkpoints};
 pub use control::Control;
 pub use engine::{check, fit};
 pub use error::FitError;
 pub use expression::{ExpressionError, parse_tie};
 pub use outcome::{
-    Bound, Estimate, Fit, Goodness, Loss, Minimum, OpenDirection, ProfilePoint, Settings, SigmaSource, Solver,
-    StopReason, TracePoint,
+    Bound, Estimate, Fit, Goodness, Loss, Minimum, OpenDirection, ProfilePoint, RIVAL_SHARE, Settings, SigmaSource,
+    Solver, StopReason, TracePoint,
 };
 pub use residuals::Residuals;
 pub use warnings::misfit;

@@ -243,3 +243,14 @@ pub struct Fit {
     /// What a reader must know, each a sentence.
     pub warnings: Vec<String>,
 }
+
+/// A minimum is ruled out beside the best one where it has no more than this share of its weight.
+pub const RIVAL_SHARE: f64 = 0.05;
+
+impl Fit {
+    /// Minima that the readings do not rule out beside the best one, each with its place in [`Fit::minima`].
+    pub fn rivals(&self) -> impl Iterator<Item = (usize, &Minimum)> {
+        let least = self.minima.first().map_or(f64::INFINITY, |best| RIVAL_SHARE * best.weight);
+        self.minima.iter().enumerate().skip(1).filter(move |(_, minimum)| minimum.weight > least)
+    }
+}

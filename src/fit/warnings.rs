@@ -2,9 +2,6 @@
 
 use super::outcome::{Bound, Fit, Goodness, Loss, SigmaSource, StopReason};
 
-/// A rival with more than this share of the best one's weight is spoken of.
-const RIVAL: f64 = 0.05;
-
 /// The warnings of a result, the gravest first.
 pub(super) fn warnings(fit: &Fit) -> Vec<String> {
     let mut sentences = Vec::new();
@@ -35,9 +32,8 @@ fn stop(fit: &Fit) -> Option<String> {
 
 fn rivals(fit: &Fit) -> Option<String> {
     let best = fit.minima.first()?.weight;
-    let rivals: Vec<f64> = fit.minima.iter().skip(1).map(|minimum| minimum.weight).collect();
-    let heavy = rivals.iter().filter(|weight| **weight > RIVAL * best).count();
-    let largest = rivals.into_iter().fold(0.0, f64::max);
+    let heavy = fit.rivals().count();
+    let largest = fit.rivals().map(|(_, minimum)| minimum.weight).fold(0.0, f64::max);
     (heavy > 0).then(|| {
         let (noun, verb) = if heavy == 1 { ("minimum", "has") } else { ("minima", "have") };
         format!(

@@ -1,11 +1,8 @@
 //! The answer in a sentence or two: value ± error, its rivals, what stays open.
 
 use super::outcome::{Case, CaseData, Outcome, PeakFit, ThicknessOrder};
-use crate::fit::{Bound, Estimate, Fit, Minimum, StopReason, misfit};
+use crate::fit::{Bound, Estimate, Fit, Minimum, RIVAL_SHARE, StopReason, misfit};
 use crate::number::{minus, with_error};
-
-/// A rival minimum with more than this share of the best one's weight is named.
-const RIVAL_SHARE: f64 = 0.05;
 
 /// Most parameters that a sentence can carry.
 const MOST_NAMED: usize = 3;
@@ -213,7 +210,7 @@ const MOST_RIVALS: usize = 4;
 /// A sentence on minima that the data cannot rule out, the heaviest first.
 fn rivals(fit: &Fit) -> Option<String> {
     let (best, others) = fit.minima.split_first()?;
-    let mut heavy: Vec<&Minimum> = others.iter().filter(|minimum| minimum.weight > RIVAL_SHARE * best.weight).collect();
+    let mut heavy: Vec<&Minimum> = fit.rivals().map(|(_, minimum)| minimum).collect();
     if heavy.is_empty() {
         let count = others.len();
         let noun = if count == 1 { "other minimum was" } else { "other minima were" };

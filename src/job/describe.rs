@@ -29,7 +29,7 @@ pub fn describe(job: &Job) -> Result<String, JobError> {
         let settings = &case.file.fit;
         // Writing to a String cannot fail.
         let _ = writeln!(text, "\nCase {}\n  fits {readings}; {sigma}", case.file.case);
-        let _ = writeln!(text, "  {}", model_note(&case.file)?.text);
+        let _ = writeln!(text, "  {}", model_note(&case)?.text);
         let _ = writeln!(text, "  from {} starts, seed {}", settings.starts, settings.seed);
         for (parameter, assignment) in residuals.parameters().iter().zip(&case.assignments) {
             let _ =

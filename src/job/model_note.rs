@@ -1,15 +1,17 @@
 //! What a methods section says of a case's model and instrument.
 
+use super::JobError;
+use super::case::CheckedCase;
 use super::file::ModelFile;
 use super::outcome::ModelNote;
-use super::{JobError, JobFile};
 use crate::bsdf::CoatedBase;
 use crate::measure::{Calibration, Instrument, PhaseJumps};
 
 /// Sentences, materials and works to cite.
-pub(super) fn model_note(file: &JobFile) -> Result<ModelNote, JobError> {
+pub(super) fn model_note(case: &CheckedCase) -> Result<ModelNote, JobError> {
+    let file = &case.file;
     let card = file.model.card();
-    let note = match &file.model {
+    let (text, materials, references) = match &file.model {
         ModelFile::ThinFilmLaw(design) => {
             let law = match design.phase_jumps {
                 PhaseJumps::Both => {
@@ -19,35 +21,22 @@ pub(super) fn model_note(file: &JobFile) -> Result<ModelNote, JobError> {
                     "2 d √(n² − sin²θ) = (m − ½) λ, as for a film on a base of lower index, where one reflection turns the phase"
                 }
             };
-            ModelNote {
-                kind: card.kind.to_owned(),
-                text: format!(
-                    "Peak wavelengths λ at inclination θ were fitted by the law of a single film of thickness d and \
-                     constant refractive index n under air, {law} (Born & Wolf 1999). The law leaves out absorption, \
-                     dispersion and the dependence of a reflection's phase on wavelength."
-                ),
-                materials: Vec::new(),
-                references: card.references(),
-            }
+            let text = format!(
+                "Peak wavelengths λ at inclination θ were fitted by the law of a single film of thickness d and constant \
+                 refractive index n under air, {law} (Born & Wolf 1999). The law leaves out absorption, dispersion and \
+                 the dependence of a reflection's phase on wavelength."
+            );
+            (text, Vec::new(), card.references())
         }
         ModelFile::CoatedBase(design) => {
-            let described = CoatedBase::new(design, &[500.0])?.describe();
-            ModelNote {
-                kind: card.kind.to_owned(),
-                text: described.text,
-                materials: described.materials,
-                references: described.references,
-            }
+            // The ends of the readings say which materials are used beyond what is known of them.
+            let described = CoatedBase::new(design, &case.comparison.wavelengths_nm())?.describe();
+            (described.text, described.materials, described.references)
         }
-        _ => ModelNote {
-            kind: card.kind.to_owned(),
-            text: card.text.to_owned(),
-            materials: Vec::new(),
-            references: card.references(),
-        },
+        _ => (card.text.to_owned(), Vec::new(), card.references()),
     };
-    let text = format!("{} {}", note.text, instrument_text(&file.instrument));
-    Ok(ModelNote { text: text.trim().to_owned(), ..note })
+    let text = format!("{text} {}", instrument_text(&file.instrument));
+    Ok(ModelNote { kind: card.kind.to_owned(), text: text.trim().to_owned(), materials, references })
 }
 
 /// The instrument in a sentence; empty for an ideal one with known gain.

@@ -127,8 +127,6 @@ pub struct SpectrumFit {
     pub sigmas: Option<Vec<f64>>,
     /// The model at the best minimum.
     pub model: Vec<f64>,
-    /// False where a reading was masked; empty when none was.
-    pub used: Vec<bool>,
 }
 
 /// One peak, measured and fitted.

@@ -1,14 +1,15 @@
 //! Runs a job: every case is fitted, judged and put beside its readings.
 
 use super::answer::{case_answer, job_answer};
-use super::case::{CheckedCase, Comparison};
+use super::case::{CheckedCase, Comparison, extent};
 use super::file::ModelFile;
 use super::film_peaks::FilmPeaks;
 use super::model_note::model_note;
 use super::outcome::{Case, CaseData, Outcome, PeakFit, Prediction, SpectrumFit, ThicknessOrder, Truth};
 use super::peaks::PeaksProblem;
-use super::predict::{predict, values_by_name};
+use super::predict::predict;
 use super::support::film_support;
+use super::values::values_by_name;
 use super::{Job, JobError, JobFile};
 use crate::fit::{Control, Fit};
 use crate::measure::{Geometry, GonioTable, PeakReading, PeakTable};
@@ -57,7 +58,7 @@ fn run_case(case: &CheckedCase, control: &Control) -> Result<Case, JobError> {
         name: case.file.case.clone(),
         text: case.file.assumes.clone(),
         answer: String::new(),
-        model: model_note(&case.file)?,
+        model: model_note(case)?,
         fit: found,
         data,
         support,
@@ -77,7 +78,6 @@ fn spectra_data(file: &JobFile, table: &GonioTable, fitted: &[bool], fit: &Fit) 
         measured: spectrum.values.clone(),
         sigmas: spectrum.sigmas.clone(),
         model,
-        used: Vec::new(),
     });
     Ok(CaseData::Spectra { quantity: table.quantity, spectra: spectra.collect() })
 }
@@ -102,7 +102,7 @@ fn peaks_data(
         sigma_nm: reading.sigma_nm,
         model_nm: problem.peak_nm(&values, reading, implied),
     });
-    let (first_deg, last_deg) = extent(table.readings.iter().map(|reading| reading.geometry.theta_i_deg));
+    let [first_deg, last_deg] = extent(table.readings.iter().map(|reading| reading.geometry.theta_i_deg));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles are from 0 to 90")]
     let steps = ((last_deg - first_deg) / CURVE_STEP_DEG).ceil() as u32;
     let curve = (0..=steps).filter_map(|step| {
@@ -125,7 +125,7 @@ fn peaks_data(
 /// Spectra that the best minimum predicts at each reading's angles, where the model has spectra at all.
 fn predicted_spectra(file: &JobFile, table: &PeakTable, values: &[f64]) -> Result<Vec<Prediction>, JobError> {
     let ModelFile::CoatedBase(design) = &file.model else { return Ok(Vec::new()) };
-    let (shortest_nm, longest_nm) = extent(table.readings.iter().map(|reading| reading.wavelength_nm));
+    let [shortest_nm, longest_nm] = extent(table.readings.iter().map(|reading| reading.wavelength_nm));
     let model = FilmPeaks::new(design, shortest_nm)?;
     // An octave around the readings, every 4 nm: what a plot can show.
     let first = (shortest_nm * 0.7 / 4.0).floor() * 4.0;
@@ -143,10 +143,6 @@ fn predicted_spectra(file: &JobFile, table: &PeakTable, values: &[f64]) -> Resul
         }
     });
     Ok(predictions.collect())
-}
-
-fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }
 
 /// Every order's thickness, where the readings do not name the order and the model has one thickness and one index.

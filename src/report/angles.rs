@@ -40,7 +40,8 @@ pub(crate) fn meaning<'a>(mut geometries: impl Iterator<Item = &'a Geometry>) ->
 }
 
 fn angle(degrees: f64) -> String {
-    crate::number::minus(&format!("{:.1}", degrees).trim_end_matches('0').trim_end_matches('.').replace("-0", "0"))
+    let text = crate::number::to_place(degrees, -1);
+    text.strip_suffix(".0").unwrap_or(&text).to_owned()
 }
 
 /// Spectra chosen for display, as indices in the order of their angles, and how they were chosen.
@@ -71,7 +72,7 @@ pub(crate) fn representative(spectra: &[SpectrumFit]) -> Selection {
     let each = (WANTED_PANELS / incidences.len()).max(1);
     let mut indices = Vec::new();
     for group in &incidences {
-        // A spectrum that is masked altogether shows nothing.
+        // A spectrum whose readings are all 0 has no misfit beside them.
         let mut ranked: Vec<(f64, usize)> = group.iter().filter_map(|i| Some((misfit(&spectra[*i])?, *i))).collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         if ranked.is_empty() {
@@ -135,10 +136,10 @@ fn evenly(count: usize, wanted: usize) -> Vec<usize> {
     (0..wanted).map(|i| i * (count - 1) / (wanted - 1)).collect()
 }
 
-/// Root mean square residual over the mean size of a reading, masked readings left out; nothing where none is left.
+/// Root mean square residual over the mean size of a reading; nothing where all readings are 0.
 fn misfit(spectrum: &SpectrumFit) -> Option<f64> {
     let (mut count, mut squares, mut sizes) = (0.0, 0.0, 0.0);
-    for reading in super::readings::of(spectrum).filter(|r| r.used) {
+    for reading in super::readings::of(spectrum) {
         count += 1.0;
         squares += reading.residual().powi(2);
         sizes += reading.measured.abs();

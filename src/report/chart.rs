@@ -105,7 +105,6 @@ pub(crate) enum Mark {
     Disc,
     Square,
     Diamond,
-    Triangle,
 }
 
 /// Values by column and row, as colours.

@@ -555,7 +555,6 @@ fn marker(centre: (f64, f64), mark: Mark, colour: Colour, open: bool, shapes: &m
             }
             Mark::Square => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
             Mark::Diamond => &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
-            Mark::Triangle => &[(0.0, -1.2), (1.1, 0.8), (-1.1, 0.8)],
         };
         let points = corners.iter().map(|(x, y)| (centre.0 + radius * x, centre.1 + radius * y)).collect();
         shapes.push(Shape::Polygon { points, colour });

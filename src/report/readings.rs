@@ -9,7 +9,6 @@ pub(crate) struct Reading {
     pub(crate) wavelength_nm: f64,
     pub(crate) measured: f64,
     pub(crate) model: f64,
-    pub(crate) used: bool,
 }
 
 impl Reading {
@@ -22,11 +21,10 @@ impl Reading {
 /// The readings of a spectrum, in the order of their wavelengths.
 pub(crate) fn of(spectrum: &SpectrumFit) -> impl Iterator<Item = Reading> {
     let values = spectrum.measured.iter().zip(&spectrum.model);
-    spectrum.wavelengths_nm.iter().zip(values).enumerate().map(|(index, (wavelength_nm, (measured, model)))| Reading {
+    spectrum.wavelengths_nm.iter().zip(values).map(|(wavelength_nm, (measured, model))| Reading {
         wavelength_nm: *wavelength_nm,
         measured: *measured,
         model: *model,
-        used: spectrum.used.get(index).copied().unwrap_or(true),
     })
 }
 
@@ -58,10 +56,9 @@ fn quantity_unit(quantity: Quantity) -> &'static str {
 /// Root mean square of model minus reading over what the fit saw, with its unit.
 pub(crate) fn rms(case: &Case) -> Option<String> {
     let (residuals, unit): (Vec<f64>, &str) = match &case.data {
-        CaseData::Spectra { quantity, spectra } => (
-            spectra.iter().filter(|s| s.fitted).flat_map(of).filter(|r| r.used).map(|r| r.residual()).collect(),
-            quantity_unit(*quantity),
-        ),
+        CaseData::Spectra { quantity, spectra } => {
+            (spectra.iter().filter(|s| s.fitted).flat_map(of).map(|r| r.residual()).collect(), quantity_unit(*quantity))
+        }
         CaseData::Peaks { peaks, .. } => {
             let fitted = peaks.iter().filter(|p| p.fitted);
             (fitted.filter_map(|p| Some(p.model_nm? - p.measured_nm)).collect(), " nm")

@@ -3,8 +3,8 @@
 use super::angles;
 use super::readings::{self, Reading};
 use crate::job::{Case, CaseData, SpectrumFit};
+use crate::measure::Quantity;
 use crate::measure::colour::{Swatch, Xyz};
-use crate::measure::{Geometry, Quantity};
 
 /// Measured and fitted colour of one geometry.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,15 +72,15 @@ struct Factors {
 }
 
 impl Factors {
-    /// None where no reading is left by the mask.
+    /// None where no reading is a number.
     fn of(quantity: Quantity, spectrum: &SpectrumFit) -> Option<Self> {
-        let factor = to_factor(quantity, &spectrum.geometry);
-        let is_legible = |r: &Reading| r.used && r.measured.is_finite() && r.model.is_finite();
-        let used: Vec<Reading> = readings::of(spectrum).filter(is_legible).collect();
-        (!used.is_empty() && factor.is_finite()).then(|| Self {
-            wavelengths_nm: used.iter().map(|r| r.wavelength_nm).collect(),
-            measured: used.iter().map(|r| factor * r.measured).collect(),
-            model: used.iter().map(|r| factor * r.model).collect(),
+        let is_legible = |r: &Reading| r.measured.is_finite() && r.model.is_finite();
+        let legible: Vec<Reading> = readings::of(spectrum).filter(is_legible).collect();
+        let factor = |reading: f64| quantity.reflectance_factor(reading, &spectrum.geometry);
+        (!legible.is_empty()).then(|| Self {
+            wavelengths_nm: legible.iter().map(|r| r.wavelength_nm).collect(),
+            measured: legible.iter().map(|r| factor(r.measured)).collect(),
+            model: legible.iter().map(|r| factor(r.model)).collect(),
         })
     }
 
@@ -90,14 +90,5 @@ impl Factors {
             Swatch::new(&self.wavelengths_nm, &exposed)
         };
         Some(Pair { name, measured: seen(&self.measured)?, fitted: seen(&self.model)? })
-    }
-}
-
-/// A perfect white diffuser has the BRDF 1/π in all directions.
-fn to_factor(quantity: Quantity, geometry: &Geometry) -> f64 {
-    match quantity {
-        Quantity::Brdf => std::f64::consts::PI,
-        Quantity::BsdfCos => std::f64::consts::PI / geometry.theta_o_deg.to_radians().cos(),
-        Quantity::Reflectance => 1.0,
     }
 }

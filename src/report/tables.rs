@@ -9,8 +9,6 @@ use crate::number::{beside_error, count, percent, plain, significant, with_error
 
 /// Correlations of at least this size are listed.
 pub(crate) const STRONG_CORRELATION: f64 = 0.9;
-/// A minimum with more than this share of the best one's weight is a rival.
-const RIVAL_SHARE: f64 = 0.05;
 /// Most parameters that the table of minima has columns for.
 const MOST_MINIMUM_COLUMNS: usize = 5;
 /// Most minima that are listed at once and numbered in plots; the others are folded away.
@@ -173,17 +171,10 @@ pub(crate) fn minima(fit: &Fit) -> Minima {
 }
 
 fn rivals(fit: &Fit) -> String {
-    let Some(best) = fit.minima.first() else { return "No minimum was found.".to_owned() };
-    let heaviest = fit.minima.iter().map(|m| m.weight).fold(best.weight, f64::max);
-    let rivals: Vec<String> = fit
-        .minima
-        .iter()
-        .enumerate()
-        .skip(1)
-        .filter(|(_, m)| m.weight > RIVAL_SHARE * heaviest)
-        .map(|(index, m)| format!("number {} ({})", index + 1, share(m.weight)))
-        .collect();
+    let named = |(index, minimum): (usize, &Minimum)| format!("number {} ({})", index + 1, share(minimum.weight));
+    let rivals: Vec<String> = fit.rivals().map(named).collect();
     match (fit.minima.len(), rivals.as_slice()) {
+        (0, _) => "No minimum was found.".to_owned(),
         (1, _) => "The fit found one minimum.".to_owned(),
         (n, []) => format!("Of {n} minima, none but the best has more than 5 % of its weight."),
         (_, [one]) => format!("One rival has more than 5 % of the best minimum's weight: {one}."),

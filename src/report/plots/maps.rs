@@ -51,7 +51,7 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let label = quantity_label(*quantity);
     let caption = [
         selection.text.unwrap_or_default(),
-        "Measured and fitted share one scale; residual is model − measured. Hatched: no reading, or masked.".to_owned(),
+        "Measured and fitted share one scale; residual is model − measured. Hatched: no reading.".to_owned(),
     ]
     .join(" ");
     vec![Figure {
@@ -86,8 +86,8 @@ fn means(spectrum: &SpectrumFit, borders: &[f64], value: fn(&Reading) -> f64) ->
                         .filter(|r| distance(r) <= 2.0 * (pair[1] - pair[0])),
                 );
             }
-            let used: Vec<f64> = chosen.into_iter().filter(|r| r.used).map(value).filter(|v| v.is_finite()).collect();
-            (!used.is_empty()).then(|| used.iter().sum::<f64>() / length(used.len()))
+            let values: Vec<f64> = chosen.into_iter().map(value).filter(|v| v.is_finite()).collect();
+            (!values.is_empty()).then(|| values.iter().sum::<f64>() / length(values.len()))
         })
         .collect()
 }

@@ -3,7 +3,7 @@
 use crate::job::{Case, CaseData, SpectrumFit};
 use crate::report::angles;
 use crate::report::chart::{
-    Axis, Cell, Chart, Figure, Layer, Look, Mark, PAGE_WIDTH, Series, around_zero, extent, from_zero,
+    Axis, Cell, Chart, Figure, Layer, Look, PAGE_WIDTH, Series, around_zero, extent, from_zero,
 };
 use crate::report::palette::{BLACK, BLUE, SKY, VERMILION};
 use crate::report::readings::{self, quantity_label, quantity_note};
@@ -11,7 +11,6 @@ use crate::report::readings::{self, quantity_label, quantity_note};
 const MEASURED: Look = Look::Line { colour: SKY, width: 3.2, dashed: false };
 const FITTED: Look = Look::Line { colour: BLACK, width: 1.3, dashed: false };
 const PREDICTED: Look = Look::Line { colour: VERMILION, width: 1.5, dashed: true };
-const MASKED: Look = Look::Marks { colour: VERMILION, mark: Mark::Triangle, open: true };
 
 pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let CaseData::Spectra { quantity, spectra } = &case.data else { return Vec::new() };
@@ -22,24 +21,25 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let shown: Vec<&SpectrumFit> = selection.indices.iter().map(|i| &spectra[*i]).collect();
     let names = angles::names(spectra.iter().map(|s| &s.geometry));
     let wavelengths = extent(shown.iter().flat_map(|s| s.wavelengths_nm.iter().copied()));
-    let residuals = around_zero(shown.iter().flat_map(|s| readings::of(s)).filter(|r| r.used).map(|r| r.residual()));
+    let residuals = around_zero(shown.iter().flat_map(|s| readings::of(s)).map(|r| r.residual()));
     let is_few = shown.len() <= 4;
     let cells = selection.indices.iter().map(|index| {
         let spectrum = &spectra[*index];
         let title = if spectrum.fitted { names[*index].clone() } else { format!("{} (not fitted)", names[*index]) };
         let x = || Axis::linear("wavelength (nm)", wavelengths);
-        let used = || readings::of(spectrum).filter(|r| r.used);
-        let shown_values = extent(used().flat_map(|r| [r.measured, r.model]));
+        let shown_values = extent(readings::of(spectrum).flat_map(|r| [r.measured, r.model]));
         let (model_name, model_look) =
             if spectrum.fitted { ("fitted", FITTED) } else { ("predicted, not fitted", PREDICTED) };
-        let masked = readings::of(spectrum).filter(|r| !r.used).map(|r| (r.wavelength_nm, r.measured));
         let spectrum_chart = Chart {
             x: x(),
             y: Axis::linear(quantity_label(*quantity), from_zero(shown_values)),
             height: if is_few { 200.0 } else { 120.0 },
             layers: vec![
-                Layer::Series(Series::new("measured", used().map(|r| (r.wavelength_nm, r.measured)), MEASURED)),
-                Layer::Series(Series::new("measured, masked", masked, MASKED)),
+                Layer::Series(Series::new(
+                    "measured",
+                    readings::of(spectrum).map(|r| (r.wavelength_nm, r.measured)),
+                    MEASURED,
+                )),
                 Layer::Series(Series::new(
                     model_name,
                     readings::of(spectrum).map(|r| (r.wavelength_nm, r.model)),
@@ -55,21 +55,19 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
                 Layer::Level(0.0),
                 Layer::Series(Series::new(
                     "residual",
-                    used().map(|r| (r.wavelength_nm, r.residual())),
+                    readings::of(spectrum).map(|r| (r.wavelength_nm, r.residual())),
                     Look::Line { colour: BLUE, width: 1.1, dashed: false },
                 )),
             ],
         };
         Cell { title, charts: vec![spectrum_chart, residual_chart] }
     });
-    let has_masked = shown.iter().flat_map(|s| readings::of(s)).any(|r| !r.used);
     let sentences = [
         selection.text.unwrap_or_default(),
         angles::meaning(spectra.iter().map(|s| &s.geometry)).to_owned(),
         quantity_note(*quantity).to_owned(),
         "Each panel has its own scale of readings. Residuals are model − measured, in the same unit, all on one scale."
             .to_owned(),
-        if has_masked { "Masked readings beyond a panel's scale are not drawn.".to_owned() } else { String::new() },
     ];
     let caption = sentences.iter().filter(|s| !s.is_empty()).cloned().collect::<Vec<_>>().join(" ");
     vec![Figure {

@@ -117,6 +117,7 @@ fn fit_of_film(sigma_source: SigmaSource) -> Fit {
             reduced_chi_squared: (sigma_source == SigmaSource::Known).then_some(1.1025),
             sigma_source,
             sigma_scale: 1.0,
+            error_widening: 1.0,
             aicc: Some(453.21),
         },
         profiles: vec![("cortex.thickness_nm".into(), profile.collect())],
@@ -167,7 +168,7 @@ fn outcome(name: &str, title: &str, answer: &str, cases: Vec<Case>) -> Outcome {
     }
 }
 
-/// Thirteen mirror angles, 401 wavelengths, the last angle left out, a spike masked at 45°.
+/// Thirteen mirror angles, 401 wavelengths, the last angle left out.
 pub(super) fn film() -> Outcome {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let wavelengths: Vec<f64> = (300..=700).map(f64::from).collect();
@@ -175,18 +176,13 @@ pub(super) fn film() -> Outcome {
         let theta = 15.0 + 5.0 * f64::from(i);
         let brightness = 6.0 * (-f64::from(i) / 5.0).exp();
         let model: Vec<f64> = wavelengths.iter().map(|w| brightness * fringe(332.4, theta, *w)).collect();
-        let mut measured: Vec<f64> = wavelengths
+        let measured: Vec<f64> = wavelengths
             .iter()
             .map(|w| {
                 let noise: f64 = StandardNormal.sample(&mut random);
                 brightness * (fringe(331.0, theta, *w) * (1.0 + 0.01 * noise) + 0.004 * (w / 23.0).sin())
             })
             .collect();
-        let mut used = Vec::new();
-        if i == 6 {
-            measured[200..206].fill(3.0);
-            used = (0..401).map(|k| !(200..206).contains(&k)).collect();
-        }
         SpectrumFit {
             id: format!("teal-{i}"),
             geometry: Geometry::mirror(theta),
@@ -195,7 +191,6 @@ pub(super) fn film() -> Outcome {
             measured,
             sigmas: None,
             model,
-            used,
         }
     });
     let incidences: Vec<f64> = (0..12).map(|i| 15.0 + 5.0 * f64::from(i)).collect();
@@ -247,7 +242,7 @@ pub(super) fn synthetic() -> Outcome {
     outcome
 }
 
-/// Six incidences with forty directions each, 31 wavelengths, BRDF, gloss masked near the mirror.
+/// Six incidences with forty directions each, 31 wavelengths, BRDF, gloss near the mirror held out.
 pub(super) fn paint() -> Outcome {
     let wavelengths: Vec<f64> = (40..=70).map(|w| 10.0 * f64::from(w)).collect();
     let mut spectra = Vec::new();
@@ -266,10 +261,9 @@ pub(super) fn paint() -> Outcome {
             spectra.push(SpectrumFit {
                 id: format!("{theta_i}/{theta_o}/{phi_o}"),
                 geometry: Geometry { theta_i_deg: theta_i, phi_i_deg: 0.0, theta_o_deg: theta_o, phi_o_deg: phi_o },
-                fitted: true,
+                fitted: !is_gloss,
                 measured: measured.collect(),
                 sigmas: Some(model.iter().map(|m| 0.02 * m).collect()),
-                used: if is_gloss { vec![false; wavelengths.len()] } else { Vec::new() },
                 wavelengths_nm: wavelengths.clone(),
                 model,
             });
@@ -338,6 +332,7 @@ pub(super) fn peaks() -> Outcome {
             reduced_chi_squared: Some(0.33),
             sigma_source: SigmaSource::Known,
             sigma_scale: 1.0,
+            error_widening: 1.0,
             aicc: Some(8.3),
         },
         estimates,
