@@ -5,7 +5,8 @@ use super::predict::Values;
 use super::synthetic::{add_noise, forward};
 use super::{Job, JobError};
 use crate::fit::Role;
-use crate::measure::{GonioTable, Quantity, nearest};
+use crate::measure::{GonioTable, Quantity};
+use crate::names::nearest;
 
 /// Noise to add to simulated readings.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,10 +10,13 @@ use serde_path_to_error::Segment;
 use toml::de::{DeTable, DeValue};
 
 use super::{JobError, JobFile};
+use crate::bsdf::cylinder::CylinderDesign;
 use crate::bsdf::{
-    Design, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign, RoughPlasticDesign,
+    Design, FeatherDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign,
+    RoughPlasticDesign,
 };
-use crate::measure::{ThinFilmLawDesign, nearest};
+use crate::measure::ThinFilmLawDesign;
+use crate::names::nearest;
 
 /// Parses a job, or says in which line and key it goes wrong.
 pub(super) fn parse(text: &str, path: &Path) -> Result<JobFile, JobError> {
@@ -96,6 +99,8 @@ fn in_model(job: &toml::Value, slip: &Slip) -> Option<Slip> {
         "iridescent-plastic" => deserialise::<IridescentPlasticDesign>(model).err()?,
         "granier-heidrich" => deserialise::<GranierHeidrichDesign>(model).err()?,
         "lambertian" => deserialise::<LambertianDesign>(model).err()?,
+        "cylinder" | "spongy-barb" => deserialise::<CylinderDesign>(model).err()?,
+        "feather" => deserialise::<FeatherDesign>(model).err()?,
         "thin-film-law" => deserialise::<ThinFilmLawDesign>(model).err()?,
         _ => return None,
     };
