@@ -7,7 +7,6 @@ pub mod bsdf;
 pub mod fit;
 pub mod job;
 pub mod measure;
-mod names;
 mod number;
 pub mod optics;
 pub mod parameter;

@@ -111,15 +111,15 @@ pub enum ModelError {
     },
     /// A bird that is not in the table of barbs.
     #[error(
-        "`species` is {found:?}, which is none of the {count} birds whose barbs are known; {near}; or leave the key out and set `barb_share`"
+        "`species` is {found:?}, which is none of the {count} birds whose barbs are known; {meant}; or leave the key out and set `barb_share`"
     )]
     UnknownSpecies {
         /// Name found.
         found: String,
         /// Number of birds known.
         count: usize,
-        /// Names that could be meant.
-        near: String,
+        /// Which names could be meant.
+        meant: String,
     },
     /// A material that does not exist, or a wrong table.
     #[error("{what}: {problem}")]

@@ -13,9 +13,8 @@ use super::{InputFile, JobError, JobFile, synthetic};
 use crate::fit::{Assignment, Control, Fit, FitError, Loss, Prior, Residuals, Role, check, fit, parse_tie};
 use crate::measure::{
     Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, TableText,
-    ThinFilmLaw, read_table,
+    ThinFilmLaw, nearest, read_table,
 };
-use crate::names::nearest;
 use crate::parameter::{Parameter, Spread};
 
 /// A case, checked and ready to be fitted.

@@ -5,8 +5,7 @@ use super::predict::Values;
 use super::synthetic::{add_noise, forward};
 use super::{Job, JobError};
 use crate::fit::Role;
-use crate::measure::{GonioTable, Quantity};
-use crate::names::nearest;
+use crate::measure::{GonioTable, Quantity, nearest};
 
 /// Noise to add to simulated readings.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -15,8 +15,7 @@ use crate::bsdf::{
     Design, FeatherDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign,
     RoughPlasticDesign,
 };
-use crate::measure::ThinFilmLawDesign;
-use crate::names::nearest;
+use crate::measure::{ThinFilmLawDesign, nearest};
 
 /// Parses a job, or says in which line and key it goes wrong.
 pub(super) fn parse(text: &str, path: &Path) -> Result<JobFile, JobError> {

@@ -1,7 +1,6 @@
 //! The materials that are known by name.
 
 use super::{Dispersion, MaterialError, Reference};
-use crate::names::edit_distance;
 
 /// How well a material's numbers are known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,4 +143,20 @@ pub fn known_material(name: &str) -> Result<&'static KnownMaterial, MaterialErro
 
 fn names(material: &'static KnownMaterial) -> impl Iterator<Item = &'static str> {
     std::iter::once(material.name).chain(material.aliases.iter().copied())
+}
+
+/// Letters to insert, delete or replace to turn one word into the other (Levenshtein 1966).
+fn edit_distance(from: &str, to: &str) -> usize {
+    let to: Vec<char> = to.chars().collect();
+    let mut row: Vec<usize> = (0..=to.len()).collect();
+    for (i, letter) in from.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, other) in to.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != *other);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[to.len()]
 }

@@ -5,7 +5,10 @@ use std::sync::LazyLock;
 use serde::Deserialize;
 
 use crate::bsdf::ModelError;
-use crate::names::nearest_few;
+use crate::nearest::nearest;
+
+/// Names that the refusal of a wrong one suggests at most.
+const SUGGESTIONS: usize = 3;
 
 /// The barbs of a species' flight feathers, means over its birds.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -34,17 +37,20 @@ impl BarbSpecies {
     pub fn named(name: &str) -> Result<&'static Self, ModelError> {
         let wanted = name.replace('_', " ").split_whitespace().collect::<Vec<_>>().join(" ");
         SPECIES.iter().find(|species| species.name.eq_ignore_ascii_case(&wanted)).ok_or_else(|| {
-            let names: Vec<String> = SPECIES.iter().map(|species| species.name.clone()).collect();
-            let near = nearest_few(&wanted, &names, 3);
-            ModelError::UnknownSpecies {
-                found: name.to_owned(),
-                count: names.len(),
-                near: if near.is_empty() {
-                    format!("the names run from {} to {}", names[0], names[names.len() - 1])
-                } else {
-                    format!("the nearest are {}", near.join(", "))
-                },
+            let mut others: Vec<&str> = SPECIES.iter().map(|species| species.name.as_str()).collect();
+            let mut near = Vec::new();
+            while near.len() < SUGGESTIONS
+                && let Some(name) = nearest(&wanted, others.iter().copied())
+            {
+                others.retain(|other| *other != name);
+                near.push(name);
             }
+            let meant = match near.as_slice() {
+                [] => format!("the names run from {} to {}", others[0], others[others.len() - 1]),
+                [only] => format!("the nearest is {only}"),
+                _ => format!("the nearest are {}", near.join(", ")),
+            };
+            ModelError::UnknownSpecies { found: name.to_owned(), count: SPECIES.len(), meant }
         })
     }
 
