@@ -7,6 +7,7 @@ pub mod bsdf;
 pub mod fit;
 pub mod job;
 pub mod measure;
+mod nearest;
 mod number;
 pub mod optics;
 pub mod parameter;

@@ -15,7 +15,8 @@ use crate::bsdf::{
     Design, FeatherDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign,
     RoughPlasticDesign,
 };
-use crate::measure::{ThinFilmLawDesign, nearest};
+use crate::measure::ThinFilmLawDesign;
+use crate::nearest::suggestion;
 
 /// Parses a job, or says in which line and key it goes wrong.
 pub(super) fn parse(text: &str, path: &Path) -> Result<JobFile, JobError> {
@@ -126,9 +127,7 @@ fn in_words(message: &str) -> String {
     let message = message.trim();
     let names: Vec<String> = message.split('`').skip(1).step_by(2).map(str::to_owned).collect();
     let known = |names: &[String]| names.join(", ");
-    let meant = |name: &String, names: &[String]| {
-        nearest(name, names).map_or_else(String::new, |near| format!("; did you mean `{near}`?"))
-    };
+    let meant = |name: &String, names: &[String]| suggestion(name, names.iter().map(String::as_str));
     match names.as_slice() {
         [name, others @ ..] if message.starts_with("unknown field") => {
             format!("there is no key `{name}` here; known are {}{}", known(others), meant(name, others))

@@ -24,5 +24,4 @@ pub use peak::{Peak, PeakModel, find_peaks, mirror_cosine};
 pub use read::read_table;
 pub use table::{GonioTable, PeakReading, PeakTable, Quantity, Spectrum, Table};
 pub use text::TableText;
-pub(crate) use text::nearest;
 pub use thin_film_law::{PhaseJumps, ThinFilmLaw, ThinFilmLawDesign};

@@ -11,6 +11,7 @@ use csv::StringRecord;
 
 use super::error::{Place, TableError, TableProblem};
 use super::layout::{Delimiter, TextFormat};
+use crate::nearest::nearest;
 
 /// Largest table file, bytes. Some five million readings; the largest public gonio tables have fewer.
 const FILE_LIMIT: u64 = 256 << 20;
@@ -142,7 +143,7 @@ impl Rows<'_> {
                 let problem = TableProblem::ColumnMissing {
                     wanted: wanted.to_owned(),
                     found: self.columns.clone(),
-                    nearest: nearest(wanted, &self.columns),
+                    nearest: nearest(wanted, self.columns.iter().map(String::as_str)).map(str::to_owned),
                 };
                 Err(TableError::new(self.file, Place::Line(1), problem))
             }
@@ -291,37 +292,4 @@ fn uniform(mut text: String) -> String {
 
 fn line_of(before: &[u8]) -> u64 {
     before.iter().filter(|&&byte| byte == b'\n').count() as u64 + 1
-}
-
-/// The name that differs least from the wanted one, if it differs little: letters' case, a slip, or a part left out.
-pub(crate) fn nearest(wanted: &str, names: &[String]) -> Option<String> {
-    let wanted = wanted.to_lowercase();
-    let score = |name: &String| {
-        let name = name.to_lowercase();
-        let part = !name.is_empty() && (name.contains(&wanted) || wanted.contains(&name));
-        if part { 1 } else { edit_distance(&wanted, &name) }
-    };
-    let close = 1 + wanted.chars().count() / 3;
-    names
-        .iter()
-        .map(|name| (score(name), name))
-        .filter(|(score, _)| *score <= close)
-        .min()
-        .map(|(_, name)| name.clone())
-}
-
-/// Number of letters to change, add or drop (Levenshtein 1966).
-fn edit_distance(one: &str, other: &str) -> usize {
-    let other: Vec<char> = other.chars().collect();
-    let mut row: Vec<usize> = (0..=other.len()).collect();
-    for (i, letter) in one.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, &candidate) in other.iter().enumerate() {
-            let change = diagonal + usize::from(letter != candidate);
-            diagonal = row[j + 1];
-            row[j + 1] = change.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[other.len()]
 }

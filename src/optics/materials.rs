@@ -1,6 +1,7 @@
 //! The materials that are known by name.
 
 use super::{Dispersion, MaterialError, Reference};
+use crate::nearest::nearest;
 
 /// How well a material's numbers are known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,36 +128,15 @@ static KNOWN: [KnownMaterial; 5] = [
 pub fn known_material(name: &str) -> Result<&'static KnownMaterial, MaterialError> {
     let wanted = name.trim().to_lowercase().replace([' ', '-'], "_");
     KNOWN.iter().find(|material| names(material).any(|known| known == wanted)).ok_or_else(|| {
-        let nearest = KNOWN
-            .iter()
-            .flat_map(|material| names(material).map(|known| (edit_distance(&wanted, known), known)))
-            .min_by_key(|(distance, _)| *distance)
-            // A third of the letters wrong is no misprint any more.
-            .filter(|(distance, known)| distance * 3 <= known.len());
+        let meant = nearest(&wanted, KNOWN.iter().flat_map(names));
         MaterialError::Unknown {
             found: name.to_owned(),
             known: KNOWN.iter().map(|material| material.name).collect::<Vec<_>>().join(", "),
-            suggestion: nearest.map_or_else(String::new, |(_, known)| format!("; did you mean {known:?}?")),
+            suggestion: meant.map_or_else(String::new, |name| format!("; did you mean {name:?}?")),
         }
     })
 }
 
 fn names(material: &'static KnownMaterial) -> impl Iterator<Item = &'static str> {
     std::iter::once(material.name).chain(material.aliases.iter().copied())
-}
-
-/// Letters to insert, delete or replace to turn one word into the other (Levenshtein 1966).
-fn edit_distance(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (i, letter) in from.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, other) in to.iter().enumerate() {
-            let replaced = diagonal + usize::from(letter != *other);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[to.len()]
 }
