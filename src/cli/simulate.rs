@@ -53,8 +53,7 @@ impl Simulate {
 
 /// Whether writing there would destroy the job or its table.
 fn is_input(path: &Path, job: &Job) -> bool {
-    let data = job.file.data.file.as_ref().map(|file| job.folder.join(file));
-    let inputs = std::iter::once(job.path.clone()).chain(data);
+    let inputs = std::iter::once(job.path.clone()).chain(job.table_path());
     path.canonicalize()
         .is_ok_and(|path| inputs.filter_map(|input| input.canonicalize().ok()).any(|input| input == path))
 }

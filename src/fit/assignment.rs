@@ -32,6 +32,24 @@ pub struct Prior {
     pub sigma: f64,
 }
 
+/// Every parameter's value before anything is fitted: first starts, fixed values, and the ties to those.
+///
+/// # Panics
+/// If a tie's index is beyond the list, which [`check`](super::check) refuses.
+pub fn first_values(assignments: &[Assignment]) -> Vec<f64> {
+    let own = |assignment: &Assignment| match assignment.role {
+        Role::Free { start, .. } => start,
+        Role::Fixed(value) => value,
+        Role::Tied { constant, .. } => constant,
+    };
+    let own: Vec<f64> = assignments.iter().map(own).collect();
+    let with_ties = assignments.iter().zip(&own).map(|(assignment, value)| match &assignment.role {
+        Role::Tied { terms, .. } => value + terms.iter().map(|(index, factor)| factor * own[*index]).sum::<f64>(),
+        _ => *value,
+    });
+    with_ties.collect()
+}
+
 /// One parameter's role and prior.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assignment {

@@ -56,9 +56,6 @@ impl Mapping {
                 Role::Tied { .. } => {}
             }
         }
-        if free.is_empty() {
-            return Err(FitError::NothingFree);
-        }
         let mut ties = Vec::new();
         for (index, assignment) in assignments.iter().enumerate() {
             if let Role::Tied { constant, terms } = &assignment.role {
@@ -67,7 +64,8 @@ impl Mapping {
         }
         let mapping = Self { free, fixed, ties };
         mapping.check_ties(parameters)?;
-        Ok(mapping)
+        // Last, since a caller may have use for roles of which nothing else is wrong.
+        if mapping.free.is_empty() { Err(FitError::NothingFree) } else { Ok(mapping) }
     }
 
     /// Writes all values for these free ones; false where a tied value leaves its declared range.

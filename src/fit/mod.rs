@@ -25,7 +25,7 @@ mod step;
 mod summary;
 mod warnings;
 
-pub use assignment::{Assignment, Prior, Role};
+pub use assignment::{Assignment, Prior, Role, first_values};
 pub use checkpoint::{CheckpointError, Checkpoints};
 pub use control::Control;
 pub use engine::{check, fit};

@@ -7,13 +7,13 @@ use super::file::{DataFile, FreeFile, ModelFile, ParameterFile};
 use super::film_peaks::FilmPeaks;
 use super::load::input_file;
 use super::peaks::PeaksProblem;
-use super::predict::Values;
 use super::spectra::{SpectraProblem, SpectraSetup};
+use super::values::{Values, check_inside, index_of};
 use super::{InputFile, JobError, JobFile, synthetic};
 use crate::fit::{Assignment, Control, Fit, FitError, Loss, Prior, Residuals, Role, check, fit, parse_tie};
 use crate::measure::{
     Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, TableText,
-    ThinFilmLaw, nearest, read_table,
+    ThinFilmLaw, read_table,
 };
 use crate::parameter::{Parameter, Spread};
 
@@ -35,6 +35,15 @@ pub(super) enum Comparison {
     Spectra(GonioTable, Vec<bool>, SpectraProblem),
     /// Peak wavelengths against a peak model.
     Peaks(PeakTable, Vec<bool>, PeaksProblem),
+}
+
+impl Comparison {
+    fn residuals(&self) -> &dyn Residuals {
+        match self {
+            Self::Spectra(_, _, problem) => problem,
+            Self::Peaks(_, _, problem) => problem,
+        }
+    }
 }
 
 /// The readings of a job's data section and the file they came from.
@@ -80,7 +89,7 @@ pub(super) fn read_data(
 }
 
 /// `$BARBULE_DATA/` at the start of a path stands for the folder that the environment variable names.
-fn resolve(name: &Path, folder: &Path) -> Result<PathBuf, JobError> {
+pub(super) fn resolve(name: &Path, folder: &Path) -> Result<PathBuf, JobError> {
     match name.strip_prefix("$BARBULE_DATA") {
         Err(_) => Ok(folder.join(name)),
         Ok(rest) => match std::env::var_os("BARBULE_DATA") {
@@ -145,10 +154,7 @@ impl CheckedCase {
 
     /// Readings and model as the engine sees them.
     pub fn residuals(&self) -> &dyn Residuals {
-        match &self.comparison {
-            Comparison::Spectra(_, _, problem) => problem,
-            Comparison::Peaks(_, _, problem) => problem,
-        }
+        self.comparison.residuals()
     }
 
     /// Checks one case of a job against its readings.
@@ -172,10 +178,7 @@ impl CheckedCase {
                 Comparison::Peaks(table, fitted, problem)
             }
         };
-        let residuals: &dyn Residuals = match &comparison {
-            Comparison::Spectra(_, _, problem) => problem,
-            Comparison::Peaks(_, _, problem) => problem,
-        };
+        let residuals = comparison.residuals();
         if file.fit.loss != Loss::Squares && !residuals.sigma_known() {
             let problem = "a robust loss needs to know how large a residual is usual; give the readings a σ \
                            (`sigma` in data.layout), or use `loss = \"squares\"`";
@@ -307,15 +310,8 @@ pub(super) fn assign(
     instrument: &Instrument,
     gains: &Values,
 ) -> Result<Vec<Assignment>, JobError> {
-    let index_of = |name: &str| declared.iter().position(|parameter| parameter.name == name);
     for name in typed.keys() {
-        if index_of(name).is_none() {
-            let known: Vec<String> = declared.iter().map(|parameter| parameter.name.clone()).collect();
-            let meant = nearest(name, &known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-            let known = known.join(", ");
-            let problem = format!("this model and instrument have no such parameter; they have {known}{meant}");
-            return Err(JobError::key(format!("parameters.\"{name}\""), problem));
-        }
+        index_of(declared, name).map_err(|problem| JobError::key(format!("parameters.\"{name}\""), problem))?;
     }
     declared
         .iter()
@@ -323,11 +319,11 @@ pub(super) fn assign(
             let key = || format!("parameters.\"{}\"", parameter.name);
             match typed.get(&parameter.name) {
                 Some(ParameterFile::Fixed(value)) => {
-                    inside(parameter, *value).map_err(|problem| JobError::key(key(), problem))?;
+                    check_inside(parameter, *value).map_err(|problem| JobError::key(key(), problem))?;
                     Ok(Assignment { role: Role::Fixed(*value), prior: None })
                 }
                 Some(ParameterFile::Tied(expression)) => {
-                    let role = parse_tie(expression, index_of);
+                    let role = parse_tie(expression, |name| index_of(declared, name).ok());
                     let role = role.map_err(|error| JobError::key(key(), error.to_string()))?;
                     Ok(Assignment { role, prior: None })
                 }
@@ -359,8 +355,8 @@ fn free_assignment(parameter: &Parameter, free: &FreeFile, gains: &Values) -> Re
     let gain = gains.get(&parameter.name).copied();
     let lower = free.lower.unwrap_or_else(|| gain.map_or(parameter.lower, |gain| gain / GAIN_RANGE));
     let upper = free.upper.unwrap_or_else(|| gain.map_or(parameter.upper, |gain| gain * GAIN_RANGE));
-    inside(parameter, lower)?;
-    inside(parameter, upper)?;
+    check_inside(parameter, lower)?;
+    check_inside(parameter, upper)?;
     if lower >= upper {
         return Err(format!("lower {lower} is not below upper {upper}; exchange them, or write one number to fix it"));
     }
@@ -375,14 +371,6 @@ fn free_assignment(parameter: &Parameter, free: &FreeFile, gains: &Values) -> Re
     }
     let prior = free.prior.as_ref().map(|prior| Prior { mean: prior.mean, sigma: prior.sigma });
     Ok(Assignment { role: Role::Free { start, lower, upper }, prior })
-}
-
-fn inside(parameter: &Parameter, value: f64) -> Result<(), String> {
-    if (parameter.lower..=parameter.upper).contains(&value) {
-        return Ok(());
-    }
-    let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
-    Err(format!("found {value}; expected a value from {} to {}{unit}", parameter.lower, parameter.upper))
 }
 
 #[cfg(test)]

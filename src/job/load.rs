@@ -5,7 +5,7 @@ use std::{fs, io};
 
 use sha2::{Digest, Sha256};
 
-use super::case::{CheckedCase, read_data};
+use super::case::{CheckedCase, read_data, resolve};
 use super::error::at_line;
 use super::syntax::{keys_of, line_of, parse};
 use super::{AlternativeFile, InputFile, JobError, JobFile};
@@ -66,6 +66,11 @@ impl Job {
         let file = parse(text, Path::new(name))?;
         let (name, path, text) = (name.to_owned(), PathBuf::from(name), text.to_owned());
         Ok(Self { name, path, folder: folder.to_owned(), file, text, inputs: Vec::new() })
+    }
+
+    /// The table that the job reads, if it reads one and the folder that holds it is known.
+    pub fn table_path(&self) -> Option<PathBuf> {
+        self.file.data.file.as_ref().and_then(|name| resolve(name, &self.folder).ok())
     }
 
     /// Every case, its readings read or made and checked against its model, and the files that they came from.

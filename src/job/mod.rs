@@ -20,6 +20,7 @@ mod spectra;
 mod support;
 mod syntax;
 mod synthetic;
+mod values;
 
 pub use case::CheckedCase;
 pub use describe::describe;

@@ -1,50 +1,46 @@
 //! Solving a case on part of a table, and predicting the rest.
 
-use std::collections::BTreeMap;
-
 use super::case::{assign, first_gains, spectra_problem};
+use super::file::ParameterFile;
+use super::values::{Values, in_order, index_of, values_by_name};
 use super::{JobError, JobFile};
-use crate::fit::{Control, Fit, FitError, Residuals, Role, fit};
+use crate::fit::{Control, ExpressionError, Fit, FitError, Residuals, first_values, fit, parse_tie};
 use crate::measure::{Calibration, GonioTable, Spectrum};
 
-/// Parameter values by name.
-pub(super) type Values = BTreeMap<String, f64>;
-
-/// Values of a fit's best minimum by name.
-pub(super) fn values_by_name(fit: &Fit) -> Values {
-    fit.estimates.iter().map(|estimate| (estimate.name.clone(), estimate.value)).collect()
-}
-
-/// Fits a job's model to these spectra. Names in the job's list of parameters that its model does not have (those of a
-/// film that was taken away) are passed over. No fit where nothing is free.
+/// Fits a job's model to these spectra. What the job says of parameters that are not there any more (those of a film that
+/// was taken away, the gain of a spectrum that was left out) is passed over, ties to them too. No fit where nothing is free.
 pub(super) fn solve(file: &JobFile, table: &GonioTable, control: &Control) -> Result<(Values, Option<Fit>), JobError> {
     let problem = spectra_problem(file, table, &vec![true; table.spectra.len()])?;
     let declared = problem.parameters();
     let mut typed = file.parameters.clone();
-    typed.retain(|name, _| declared.iter().any(|parameter| parameter.name == *name));
+    let index_of = |name: &str| index_of(declared, name).ok();
+    typed.retain(|name, role| {
+        let to_nothing =
+            |expression: &str| matches!(parse_tie(expression, index_of), Err(ExpressionError::UnknownName { .. }));
+        index_of(name).is_some() && !matches!(role, ParameterFile::Tied(expression) if to_nothing(expression))
+    });
     let gains = first_gains(&problem, &table.spectra, &file.instrument);
     let assignments = assign(declared, &typed, &file.instrument, &gains)?;
     match fit(&problem, &assignments, &file.fit, control) {
         Ok(fit) => Ok((values_by_name(&fit), Some(fit))),
         Err(FitError::NothingFree) => {
-            let fixed = declared.iter().zip(&assignments).map(|(parameter, assignment)| {
-                let value = if let Role::Fixed(value) = assignment.role { value } else { parameter.default };
-                (parameter.name.clone(), value)
-            });
-            Ok((fixed.collect(), None))
+            let names = declared.iter().map(|parameter| parameter.name.clone());
+            Ok((names.zip(first_values(&assignments)).collect(), None))
         }
         Err(error) => Err(error.into()),
     }
 }
 
-/// The model's readings at the geometry of these spectra. A gain or offset of a spectrum that the fit did not see is
-/// taken from that spectrum itself, by least squares: it says how the instrument was set, not what the feather is.
-pub(super) fn predict(file: &JobFile, table: &GonioTable, values: &Values) -> Result<Vec<Vec<f64>>, JobError> {
+/// The model's readings at the geometry of these spectra, with the default of whatever has no value.
+pub(super) fn readings_at(file: &JobFile, table: &GonioTable, values: &Values) -> Result<Vec<Vec<f64>>, JobError> {
     let problem = spectra_problem(file, table, &vec![true; table.spectra.len()])?;
-    let declared = problem.parameters();
-    let all: Vec<f64> =
-        declared.iter().map(|parameter| values.get(&parameter.name).copied().unwrap_or(parameter.default)).collect();
-    let mut readings = problem.readings(&all);
+    Ok(problem.readings(&in_order(problem.parameters(), values)))
+}
+
+/// The same, but a gain or offset of a spectrum that the fit did not see is taken from that spectrum itself, by least
+/// squares: it says how the instrument was set, not what the feather is.
+pub(super) fn predict(file: &JobFile, table: &GonioTable, values: &Values) -> Result<Vec<Vec<f64>>, JobError> {
+    let mut readings = readings_at(file, table, values)?;
     for (spectrum, model) in table.spectra.iter().zip(&mut readings) {
         let unseen = |word: &str, calibration| {
             calibration == Calibration::PerSpectrum && !values.contains_key(&format!("{word}.{}", spectrum.id))

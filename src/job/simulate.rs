@@ -1,11 +1,12 @@
 //! A job run forward: the model's readings at the geometry of its table.
 
 use super::case::Comparison;
-use super::predict::Values;
-use super::synthetic::{add_noise, forward};
+use super::predict::readings_at;
+use super::synthetic::{add_noise, deviates};
+use super::values::{Values, checked};
 use super::{Job, JobError};
-use crate::fit::Role;
-use crate::measure::{GonioTable, Quantity, nearest};
+use crate::fit::{Role, first_values};
+use crate::measure::{Geometry, GonioTable, Quantity};
 
 /// Noise to add to simulated readings.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,41 +25,18 @@ pub fn simulate(job: &Job, set: &Values, noise: Noise) -> Result<String, JobErro
         let problem = format!("found {}; expected a share of each reading from 0 to below 1", noise.share);
         return Err(JobError::Option { option: "--noise", problem });
     }
-    let case = job.cases()?.0.swap_remove(0);
-    let declared = case.residuals().parameters();
-    let refused = |problem: String| Err(JobError::Option { option: "--set", problem });
-    for (name, value) in set {
-        let Some(parameter) = declared.iter().find(|parameter| parameter.name == *name) else {
-            let known: Vec<String> = declared.iter().map(|parameter| parameter.name.clone()).collect();
-            let meant = nearest(name, &known).map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
-            return refused(format!("there is no parameter `{name}`; this job has {}{meant}", known.join(", ")));
-        };
-        let (lower, upper) = (parameter.lower, parameter.upper);
-        if !(lower..=upper).contains(value) {
-            return refused(format!("found {name} = {value}; expected a value from {lower} to {upper}"));
-        }
+    let mut case = job.cases()?.0.swap_remove(0);
+    for (name, &value) in set {
+        let index = checked(case.residuals().parameters(), name, value)
+            .map_err(|problem| JobError::Option { option: "--set", problem: format!("{name}: {problem}") })?;
+        case.assignments[index].role = Role::Fixed(value);
     }
-    let start = |role: &Role| match role {
-        Role::Free { start, .. } => *start,
-        Role::Fixed(value) => *value,
-        Role::Tied { .. } => f64::NAN,
-    };
-    let named = |index: usize| set.get(&declared[index].name).copied();
-    let mut all: Vec<f64> = case.assignments.iter().map(|assignment| start(&assignment.role)).collect();
-    for (index, value) in all.iter_mut().enumerate() {
-        *value = named(index).unwrap_or(*value);
-    }
-    let free = all.clone();
-    for (index, assignment) in case.assignments.iter().enumerate() {
-        if let (Role::Tied { constant, terms }, None) = (&assignment.role, named(index)) {
-            all[index] = constant + terms.iter().map(|(other, factor)| factor * free[*other]).sum::<f64>();
-        }
-    }
+    let values = first_values(&case.assignments);
     match &case.comparison {
         Comparison::Spectra(table, _, _) => {
             let mut table: GonioTable = table.clone();
-            let values = declared.iter().zip(&all).map(|(parameter, value)| (parameter.name.clone(), *value));
-            let readings = forward(&case.file, &table, &values.collect())?;
+            let names = case.residuals().parameters().iter().map(|parameter| parameter.name.clone());
+            let readings = readings_at(&case.file, &table, &names.zip(values).collect())?;
             for (spectrum, readings) in table.spectra.iter_mut().zip(readings) {
                 spectrum.values = readings;
                 spectrum.sigmas = None;
@@ -67,22 +45,32 @@ pub fn simulate(job: &Job, set: &Values, noise: Noise) -> Result<String, JobErro
             Ok(spectra_csv(&table))
         }
         Comparison::Peaks(table, _, problem) => {
-            let implied = problem.implied_order(&all);
-            let mut text = String::from("id,theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,peak_nm\n");
-            for reading in &table.readings {
-                let Some(nm) = problem.peak_nm(&all, reading, implied) else {
+            let implied = problem.implied_order(&values);
+            let with_sigma = noise.share > 0.0;
+            let mut text = format!("{NAME_AND_ANGLES},peak_nm{}\n", if with_sigma { ",sigma_nm" } else { "" });
+            for (item, reading) in table.readings.iter().enumerate() {
+                let Some(exact_nm) = problem.peak_nm(&values, reading, implied) else {
                     let problem = format!("at these values the model has no peak for reading `{}`", reading.id);
                     return Err(JobError::key("parameters", problem));
                 };
-                let g = reading.geometry;
-                text += &format!(
-                    "{},{},{},{},{},{nm}\n",
-                    reading.id, g.theta_i_deg, g.phi_i_deg, g.theta_o_deg, g.phi_o_deg
-                );
+                let factor = deviates(noise.seed, item).next().map_or(1.0, |deviate| 1.0 + noise.share * deviate);
+                let nm = exact_nm * factor;
+                let sigma = if with_sigma { format!(",{}", noise.share * nm.abs()) } else { String::new() };
+                text += &format!("{},{nm}{sigma}\n", name_and_angles(&reading.id, &reading.geometry));
             }
             Ok(text)
         }
     }
+}
+
+/// Columns of [`name_and_angles`].
+const NAME_AND_ANGLES: &str = "id,theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg";
+
+/// The first cells of a row. A name with a comma or a quotation mark in it is put in quotation marks (RFC 4180).
+fn name_and_angles(name: &str, geometry: &Geometry) -> String {
+    let Geometry { theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg } = geometry;
+    let quoted = name.contains([',', '"']).then(|| format!("\"{}\"", name.replace('"', "\"\"")));
+    format!("{},{theta_i_deg},{phi_i_deg},{theta_o_deg},{phi_o_deg}", quoted.as_deref().unwrap_or(name))
 }
 
 fn spectra_csv(table: &GonioTable) -> String {
@@ -93,15 +81,12 @@ fn spectra_csv(table: &GonioTable) -> String {
     };
     let with_sigma = table.spectra.iter().all(|spectrum| spectrum.sigmas.is_some());
     let sigma_header = if with_sigma { ",sigma" } else { "" };
-    let mut text = format!("id,theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,wavelength_nm,{value}{sigma_header}\n");
+    let mut text = format!("{NAME_AND_ANGLES},wavelength_nm,{value}{sigma_header}\n");
     for spectrum in &table.spectra {
-        let g = spectrum.geometry;
+        let first_cells = name_and_angles(&spectrum.id, &spectrum.geometry);
         for (index, (nm, reading)) in spectrum.wavelengths_nm.iter().zip(&spectrum.values).enumerate() {
             let sigma = spectrum.sigmas.as_ref().map_or_else(String::new, |sigmas| format!(",{}", sigmas[index]));
-            text += &format!(
-                "{},{},{},{},{},{nm},{reading}{sigma}\n",
-                spectrum.id, g.theta_i_deg, g.phi_i_deg, g.theta_o_deg, g.phi_o_deg
-            );
+            text += &format!("{first_cells},{nm},{reading}{sigma}\n");
         }
     }
     text

@@ -2,7 +2,8 @@
 
 use super::case::{CheckedCase, Comparison};
 use super::file::{JobFile, ModelFile};
-use super::predict::{Values, predict, solve, values_by_name};
+use super::predict::{predict, solve};
+use super::values::{Values, values_by_name};
 use super::{JobError, Support};
 use crate::bsdf::Model;
 use crate::bsdf::{CoatedBase, Design};

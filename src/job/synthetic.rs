@@ -1,13 +1,12 @@
 //! Readings made from known values: the job run forward.
 
-use std::collections::BTreeMap;
-
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::case::spectra_problem;
 use super::file::SyntheticFile;
+use super::values::{checked, in_order};
 use super::{JobError, JobFile};
 use crate::fit::Residuals;
 use crate::measure::{Geometry, GonioTable, Spectrum};
@@ -34,6 +33,12 @@ pub(super) fn readings(recipe: &SyntheticFile, file: &JobFile) -> Result<GonioTa
     if let Some(angle) = recipe.mirror_deg.iter().find(|angle| !(0.0..90.0).contains(*angle)) {
         return Err(key("mirror_deg", format!("found {angle}; expected inclinations from 0 to below 90 degrees")));
     }
+    // A spectrum is named after its angle, and its gain after its name.
+    let mut sorted = recipe.mirror_deg.clone();
+    sorted.sort_by(f64::total_cmp);
+    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] >= pair[1]) {
+        return Err(key("mirror_deg", format!("found {} twice; give each inclination once", pair[0])));
+    }
     if !(0.0..1.0).contains(&recipe.noise) {
         return Err(key(
             "noise",
@@ -54,55 +59,40 @@ pub(super) fn readings(recipe: &SyntheticFile, file: &JobFile) -> Result<GonioTa
         })
         .collect();
     let mut table = GonioTable { quantity: recipe.quantity, spectra };
-    let exact = forward(file, &table, &recipe.truth).map_err(|error| match error {
-        JobError::Key { key, problem } if key.starts_with("truth") => {
-            JobError::key(format!("data.synthetic.{key}"), problem)
-        }
-        other => other,
-    })?;
+    let problem = spectra_problem(file, &table, &vec![true; table.spectra.len()])?;
+    for (name, value) in &recipe.truth {
+        checked(problem.parameters(), name, *value).map_err(|problem| key(&format!("truth.\"{name}\""), problem))?;
+    }
+    let exact = problem.readings(&in_order(problem.parameters(), &recipe.truth));
     for (spectrum, values) in table.spectra.iter_mut().zip(exact) {
         spectrum.values = values;
     }
     add_noise(&mut table, recipe.noise, recipe.seed);
+    let mut sigmas = table.spectra.iter().flat_map(|spectrum| spectrum.sigmas.iter().flatten());
+    if sigmas.any(|sigma| *sigma <= 0.0) {
+        let problem = "the model reads 0 somewhere, and no share of 0 is a σ; choose a truth that reflects everywhere, \
+                       or write 0";
+        return Err(key("noise", problem.into()));
+    }
     Ok(table)
 }
 
-/// The model's readings at the geometry of a table, with these parameter values and the defaults for the rest.
-pub(super) fn forward(
-    file: &JobFile,
-    table: &GonioTable,
-    values: &BTreeMap<String, f64>,
-) -> Result<Vec<Vec<f64>>, JobError> {
-    let problem = spectra_problem(file, table, &vec![true; table.spectra.len()])?;
-    let declared = problem.parameters();
-    for (name, value) in values {
-        let Some(parameter) = declared.iter().find(|parameter| parameter.name == *name) else {
-            let known: Vec<&str> = declared.iter().map(|parameter| parameter.name.as_str()).collect();
-            let problem = format!("this model has no such parameter; it has {}", known.join(", "));
-            return Err(JobError::key(format!("truth.\"{name}\""), problem));
-        };
-        if !(parameter.lower..=parameter.upper).contains(value) {
-            let problem = format!("found {value}; expected a value from {} to {}", parameter.lower, parameter.upper);
-            return Err(JobError::key(format!("truth.\"{name}\""), problem));
-        }
-    }
-    let all: Vec<f64> = declared.iter().map(|p| values.get(&p.name).copied().unwrap_or(p.default)).collect();
-    Ok(problem.readings(&all))
-}
-
-/// Multiplies each reading by 1 + noise·z and notes σ = noise · reading as an instrument's maker would state it. The
-/// random numbers belong to the spectrum, so that leaving one out changes no other.
+/// Multiplies each reading by 1 + noise·z and notes σ = noise · |reading| as an instrument's maker would state it.
 pub(super) fn add_noise(table: &mut GonioTable, noise: f64, seed: u64) {
     if noise <= 0.0 {
         return;
     }
     for (index, spectrum) in table.spectra.iter_mut().enumerate() {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        random.set_stream(index as u64);
-        for value in &mut spectrum.values {
-            let deviate: f64 = StandardNormal.sample(&mut random);
+        for (value, deviate) in spectrum.values.iter_mut().zip(deviates(seed, index)) {
             *value *= 1.0 + noise * deviate;
         }
-        spectrum.sigmas = Some(spectrum.values.iter().map(|value| noise * value).collect());
+        spectrum.sigmas = Some(spectrum.values.iter().map(|value| noise * value.abs()).collect());
     }
+}
+
+/// Standard normal deviates that belong to one item of a table, so that leaving one out changes no other.
+pub(super) fn deviates(seed: u64, item: usize) -> impl Iterator<Item = f64> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(item as u64);
+    StandardNormal.sample_iter(random)
 }
