@@ -10,6 +10,7 @@ use barbule::bsdf::{
 use proptest::prelude::*;
 use rayon::prelude::*;
 
+use super::desk::{Desk, film_with};
 use super::directions::{RGB_NM, any_direction, any_direction_above, evaluate, spherical, values};
 
 fn feather(design: &FeatherDesign) -> Feather {
@@ -233,4 +234,30 @@ fn a_part_has_parameters_for_each_channel_where_it_says_so() {
     ];
     assert_eq!(names, expected);
     assert!(toml::from_str::<FeatherDesign>("barb = { kind = \"cylinder\", per_chanel = [] }").is_err());
+}
+
+/// A slip inside a model is told by line and key, whatever its kind.
+#[test]
+fn a_slip_in_a_fibre_or_feather_is_told_in_words() {
+    let plain = "kind = \"coated-base\"\n\
+                 layers = [{ name = \"film\", material = \"keratin\", thickness_nm = 300 }]\n\
+                 substrate = \"bird_melanin\"\n";
+    for (model, parts) in [
+        ("kind = \"cylinder\"\nlob = 1\n", ["line 16: model.lob", "there is no key `lob`", "did you mean `lobe`?"]),
+        (
+            "kind = \"spongy-barb\"\nlobe = \"logistic\"\n",
+            ["line 16: model.lobe", "found `logistic`", "expected one of"],
+        ),
+        ("kind = \"feather\"\nspecie = 1\n", ["line 16: model.specie", "no key `specie`", "mean `species`"]),
+        (
+            "kind = \"feather\"\nbarb = { kind = \"cilinder\" }\n",
+            ["line 16: model.barb", "`cilinder`", "mean `cylinder`"],
+        ),
+        (
+            "kind = \"feather\"\nspecies = \"Corvus corax\"\n",
+            ["model: `species` is \"Corvus corax\"", "the nearest", "Corvus"],
+        ),
+    ] {
+        Desk::with("slip.toml", film_with(plain, model)).barbule("check slip.toml").complains(&parts);
+    }
 }
