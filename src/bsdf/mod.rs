@@ -9,24 +9,28 @@ mod beckmann_lobe;
 mod channel_parameters;
 mod coated_base;
 pub mod cylinder;
+mod feather;
 mod granier;
 mod interference;
 mod iridescent_plastic;
 mod lambertian;
 mod microfacet;
 mod model_error;
+mod oriented;
 mod rough_plastic;
 pub mod spongy_barb;
 
 pub use coated_base::{
     CoatedBase, Description, Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice, OwnMaterial,
 };
+pub use feather::{BarbDesign, BarbSpecies, BarbuleDesign, Feather, FeatherDesign};
 pub use granier::{GranierHeidrich, GranierHeidrichDesign, NormalSource, Site, normal_from_rgb};
 pub use interference::Interference;
 pub use iridescent_plastic::{IridescentPlastic, IridescentPlasticDesign};
 pub use lambertian::{Lambertian, LambertianDesign};
 pub use microfacet::{Distribution, MicrofacetDesign, MicrofacetInterface};
 pub use model_error::ModelError;
+pub use oriented::Oriented;
 pub use rough_plastic::{InternalReflection, RoughPlastic, RoughPlasticDesign};
 
 use nalgebra::Vector3;
@@ -77,6 +81,12 @@ pub trait Bsdf: Send + Sync {
     /// Writes the scattering function in 1/sr, without the cosine, one value a channel, for light from `incoming`
     /// seen from `outgoing`. Directions below the surface (z < 0) are legal; a model that only reflects gives 0 there.
     fn evaluate(&self, incoming: &Direction, outgoing: &Direction, values: &mut [f64]);
+
+    /// Share of the light from `incoming` that goes straight through without meeting anything, 0 to 1. As a function of
+    /// directions it is `share · δ(ωo, −ωi)/|n·ωi|`, which [`Bsdf::evaluate`] cannot show.
+    fn straight_through(&self, _incoming: &Direction) -> f64 {
+        0.0
+    }
 
     /// [`Bsdf::evaluate`] for many pairs of directions at a time: all channels of the first pair, then of the second.
     ///

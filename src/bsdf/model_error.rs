@@ -109,6 +109,18 @@ pub enum ModelError {
         /// The keys found.
         found: String,
     },
+    /// A bird that is not in the table of barbs.
+    #[error(
+        "`species` is {found:?}, which is none of the {count} birds whose barbs are known; {meant}; or leave the key out and set `barb_share`"
+    )]
+    UnknownSpecies {
+        /// Name found.
+        found: String,
+        /// Number of birds known.
+        count: usize,
+        /// Which names could be meant.
+        meant: String,
+    },
     /// A material that does not exist, or a wrong table.
     #[error("{what}: {problem}")]
     Material {

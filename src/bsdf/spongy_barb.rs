@@ -17,8 +17,8 @@
 
 use std::f64::consts::PI;
 
-use super::cylinder::{Cylinder, CylinderModel, FibreAngles, over_cosine};
-use super::{Bsdf, Direction, Model};
+use super::cylinder::{Cylinder, CylinderDesign, CylinderModel, FibreAngles, over_cosine};
+use super::{Bsdf, Direction, Model, ModelError};
 use crate::parameter::{Parameter, Spread};
 
 /// A band that cannot be.
@@ -134,15 +134,12 @@ pub struct SpongyBarbModel {
 }
 
 impl SpongyBarbModel {
-    /// A sponge inside this cylinder, whose channels are at these wavelengths.
+    /// A sponge inside this cylinder, at these wavelengths (nm, one a channel).
     ///
     /// # Errors
-    /// If the wavelengths are not one a channel.
-    pub fn new(cylinder: CylinderModel, wavelengths_nm: &[f64]) -> Result<Self, SpongyBarbError> {
-        let (wavelengths, channels) = (wavelengths_nm.len(), cylinder.channel_count());
-        if wavelengths != channels {
-            return Err(SpongyBarbError::ChannelCount { wavelengths, channels });
-        }
+    /// As [`CylinderModel::new`].
+    pub fn new(design: &CylinderDesign, wavelengths_nm: &[f64]) -> Result<Self, ModelError> {
+        let cylinder = CylinderModel::new(design, wavelengths_nm)?;
         let mut parameters = cylinder.parameters().to_vec();
         parameters.extend([
             band_parameter(

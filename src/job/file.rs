@@ -8,7 +8,8 @@ use serde::{Deserialize, Deserializer, Serialize, de};
 
 use crate::bsdf::cylinder::CylinderDesign;
 use crate::bsdf::{
-    Design, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign, RoughPlasticDesign,
+    Design, FeatherDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign,
+    RoughPlasticDesign,
 };
 use crate::fit::Settings;
 use crate::measure::{Instrument, Quantity, TableLayout, ThinFilmLawDesign};
@@ -122,6 +123,8 @@ pub enum ModelFile {
     Cylinder(CylinderDesign),
     /// The same fibre with a sponge inside that scatters one band of wavelengths: a blue barb without iridescence.
     SpongyBarb(CylinderDesign),
+    /// The vane of a feather: barbs along the tangent, barbules at an angle to them.
+    Feather(FeatherDesign),
     /// The closed law of a single film's peak wavelengths. For peak tables only.
     ThinFilmLaw(ThinFilmLawDesign),
 }

@@ -7,7 +7,8 @@ use super::file::ModelFile;
 use crate::bsdf::cylinder::CylinderModel;
 use crate::bsdf::spongy_barb::SpongyBarbModel;
 use crate::bsdf::{
-    CoatedBase, GranierHeidrich, IridescentPlastic, Lambertian, MicrofacetInterface, Model, RoughPlastic,
+    CoatedBase, Feather, GranierHeidrich, IridescentPlastic, Lambertian, MicrofacetInterface, Model, Oriented,
+    RoughPlastic,
 };
 use crate::measure::{PeakModel, ThinFilmLaw};
 use crate::optics::Reference;
@@ -23,12 +24,9 @@ impl ModelFile {
             Self::IridescentPlastic(design) => Box::new(IridescentPlastic::new(design, wavelengths_nm)?),
             Self::GranierHeidrich(design) => Box::new(GranierHeidrich::new(design, wavelengths_nm)?),
             Self::Lambertian(design) => Box::new(Lambertian::new(design, wavelengths_nm)?),
-            Self::Cylinder(design) => Box::new(CylinderModel::new(design, wavelengths_nm)?),
-            Self::SpongyBarb(design) => {
-                let cylinder = CylinderModel::new(design, wavelengths_nm)?;
-                let barb = SpongyBarbModel::new(cylinder, wavelengths_nm);
-                Box::new(barb.map_err(|error| JobError::key("model", error.to_string()))?)
-            }
+            Self::Cylinder(design) => oriented(CylinderModel::new(design, wavelengths_nm)?),
+            Self::SpongyBarb(design) => oriented(SpongyBarbModel::new(design, wavelengths_nm)?),
+            Self::Feather(design) => oriented(Feather::new(design, wavelengths_nm)?),
             Self::ThinFilmLaw(_) => {
                 let problem = "`thin-film-law` predicts peak wavelengths, not spectra; use `coated-base`";
                 return Err(JobError::key("model.kind", problem));
@@ -47,9 +45,15 @@ impl ModelFile {
             Self::Lambertian(_) => &LAMBERTIAN,
             Self::Cylinder(_) => &CYLINDER,
             Self::SpongyBarb(_) => &SPONGY_BARB,
+            Self::Feather(_) => &FEATHER,
             Self::ThinFilmLaw(_) => &THIN_FILM_LAW,
         }
     }
+}
+
+/// A model with a tangent: how it lies in the table's frame is one more parameter.
+fn oriented(model: impl Model + 'static) -> Box<dyn Model> {
+    Box::new(Oriented::new(Box::new(model)))
 }
 
 /// What is said of a model wherever it is named.
@@ -81,7 +85,7 @@ const WALTER: (&str, &str) = (
 );
 
 /// Every model, in the order in which `barbule models` lists them.
-const CARDS: [&ModelCard; 9] = [
+const CARDS: [&ModelCard; 10] = [
     &COATED_BASE,
     &MICROFACET,
     &ROUGH_PLASTIC,
@@ -90,6 +94,7 @@ const CARDS: [&ModelCard; 9] = [
     &LAMBERTIAN,
     &CYLINDER,
     &SPONGY_BARB,
+    &FEATHER,
     &THIN_FILM_LAW,
 ];
 
@@ -150,35 +155,63 @@ const LAMBERTIAN: ModelCard = ModelCard {
     works: &[],
 };
 
-const FIBRE_WORKS: &[(&str, &str)] = &[
-    (
-        "d'Eon 2011",
-        "d'Eon, E., Francois, G., Hill, M., Letteri, J. and Aubry, J.-M. (2011). An energy-conserving hair reflectance \
-         model. Computer Graphics Forum 30, 1181–1187.",
-    ),
-    (
-        "Chiang 2016",
-        "Chiang, M. J.-Y., Bitterli, B., Tappan, C. and Burley, B. (2016). A practical and controllable hair and fur model \
-         for production path tracing. Computer Graphics Forum 35, 275–283.",
-    ),
-];
+const DEON: (&str, &str) = (
+    "d'Eon 2011",
+    "d'Eon, E., Francois, G., Hill, M., Letteri, J. and Aubry, J.-M. (2011). An energy-conserving hair reflectance \
+     model. Computer Graphics Forum 30, 1181–1187.",
+);
+
+const CHIANG: (&str, &str) = (
+    "Chiang 2016",
+    "Chiang, M. J.-Y., Bitterli, B., Tappan, C. and Burley, B. (2016). A practical and controllable hair and fur model \
+     for production path tracing. Computer Graphics Forum 35, 275–283.",
+);
 
 const CYLINDER: ModelCard = ModelCard {
     kind: "cylinder",
     text: "A dielectric fibre along the tangent, averaged over its width (d'Eon et al. 2011; Chiang et al. 2016).",
-    usage: "Reads spectra at any four angles, azimuths counted from the fibre. `per_channel` gives the parameters that it \
+    usage: "Reads spectra at any four angles; `tangent_deg` says how the fibre lies. `per_channel` gives the parameters that it \
             names one value a wavelength.",
     example: "kind = \"cylinder\"",
-    works: FIBRE_WORKS,
+    works: &[DEON, CHIANG],
 };
 
 const SPONGY_BARB: ModelCard = ModelCard {
     kind: "spongy-barb",
     text: "A dielectric fibre along the tangent (d'Eon et al. 2011; Chiang et al. 2016) with a sponge inside that scatters \
            one band of wavelengths.",
-    usage: "Reads spectra at any four angles, azimuths counted from the fibre.",
+    usage: "Reads spectra at any four angles; `tangent_deg` says how the fibre lies.",
     example: "kind = \"spongy-barb\"",
-    works: FIBRE_WORKS,
+    works: &[DEON, CHIANG],
+};
+
+const FEATHER: ModelCard = ModelCard {
+    kind: "feather",
+    text: "The vane of a feather (Romeo Arroyo 2021): barbs along the tangent and barbules at an angle to both sides of \
+           them, each weighted by the share of the area that it covers. Barbs and barbules are dielectric fibres (d'Eon et \
+           al. 2011; Chiang et al. 2016) or, as the job says, spongy barbs and coated lamellae.",
+    usage: "Reads spectra at any four angles; `tangent_deg` says how the barbs lie. `species` takes the barbs' share from \
+            a table of 46 birds (Pap et al. 2015). `per_channel` of barb or barbule gives the parameters that it names one \
+            value a wavelength.",
+    example: "kind = \"feather\"\n\
+              species = \"Columba livia\"\n\
+              barb = { kind = \"cylinder\" }\n\
+              barbule = { kind = \"cylinder\" }",
+    works: &[
+        (
+            "Romeo Arroyo 2021",
+            "Romeo Arroyo, Á. (2021). Modelado basado en física de la apariencia de plumas (physically based modeling of \
+             feathers). Bachelor's thesis, Universidad de Zaragoza.",
+        ),
+        (
+            "Pap 2015",
+            "Pap, P. L., Osváth, G., Sándor, K., Vincze, O., Bărbos, L., Marton, A., Nudds, R. L. and Vágási, C. I. \
+             (2015). Interspecific variation in the structural properties of flight feathers in birds indicates \
+             adaptation to flight requirements and habitat. Functional Ecology 29, 746–757.",
+        ),
+        DEON,
+        CHIANG,
+    ],
 };
 
 const THIN_FILM_LAW: ModelCard = ModelCard {

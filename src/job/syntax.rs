@@ -10,8 +10,10 @@ use serde_path_to_error::Segment;
 use toml::de::{DeTable, DeValue};
 
 use super::{JobError, JobFile};
+use crate::bsdf::cylinder::CylinderDesign;
 use crate::bsdf::{
-    Design, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign, RoughPlasticDesign,
+    Design, FeatherDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign,
+    RoughPlasticDesign,
 };
 use crate::measure::ThinFilmLawDesign;
 use crate::nearest::suggestion;
@@ -97,6 +99,8 @@ fn in_model(job: &toml::Value, slip: &Slip) -> Option<Slip> {
         "iridescent-plastic" => deserialise::<IridescentPlasticDesign>(model).err()?,
         "granier-heidrich" => deserialise::<GranierHeidrichDesign>(model).err()?,
         "lambertian" => deserialise::<LambertianDesign>(model).err()?,
+        "cylinder" | "spongy-barb" => deserialise::<CylinderDesign>(model).err()?,
+        "feather" => deserialise::<FeatherDesign>(model).err()?,
         "thin-film-law" => deserialise::<ThinFilmLawDesign>(model).err()?,
         _ => return None,
     };

@@ -108,7 +108,6 @@ fn fit_of_film(sigma_source: SigmaSource) -> Fit {
             text: "roughness and instrument.gain only as their ratio".into(),
         }],
         goodness: Goodness {
-            error_widening: 1.0,
             readings: 4812,
             effective_readings: 402.7,
             free_parameters: 5,
@@ -323,7 +322,6 @@ pub(super) fn peaks() -> Outcome {
         correlations: vec![vec![Some(1.0), Some(-0.71)], vec![Some(-0.71), Some(1.0)]],
         covariance: vec![vec![Some(0.16), Some(-0.005)], vec![Some(-0.005), Some(0.0003)]],
         goodness: Goodness {
-            error_widening: 1.0,
             readings: 9,
             effective_readings: 9.0,
             free_parameters: 2,
