@@ -49,7 +49,7 @@ pub struct Settings {
     pub max_iterations: u64,
     /// Seed of everything random.
     pub seed: u64,
-    /// Whether standard errors grow by √(N/N_eff) where neighbouring residuals err together. Without it they are the
+    /// Whether standard errors grow by √(N/Nₑ) where neighbouring residuals err together. Without it they are the
     /// textbook's for independent readings.
     pub correlated_errors: bool,
 }
