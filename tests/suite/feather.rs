@@ -232,8 +232,8 @@ fn a_slip_in_a_fibre_or_feather_is_told_in_words() {
             ["line 16: model.barb", "`cilinder`", "mean `cylinder`"],
         ),
         (
-            "kind = \"feather\"\nspecies = \"Corvus corax\"\n",
-            ["model: `species` is \"Corvus corax\"", "the nearest", "Corvus"],
+            "kind = \"feather\"\nspecies = \"Corvus monedul\"\n",
+            ["model: `species` is \"Corvus monedul\"", "the nearest", "Corvus monedula"],
         ),
     ] {
         Desk::with("slip.toml", film_with(plain, model)).barbule("check slip.toml").complains(&parts);
