@@ -211,7 +211,6 @@ fn declare_layers<'a>(
     wavelengths_nm: &[f64],
     parameters: &mut Vec<Parameter>,
 ) -> Result<Layers<'a>, ModelError> {
-    let shortest_nm = wavelengths_nm.iter().copied().fold(f64::INFINITY, f64::min);
     let mut layers = Layers { list: Vec::new(), sequence: Vec::new() };
     for entry in &design.layers {
         let (period, count) = match entry {
@@ -226,16 +225,11 @@ fn declare_layers<'a>(
         }
         let first = layers.list.len();
         for layer in period {
-            check_name("layer", &layer.name)?;
+            parameters.push(declare_thickness(layer, wavelengths_nm, count)?);
             if layers.list.iter().any(|other| other.name == layer.name) {
                 return Err(ModelError::TwoLayers { name: layer.name.clone() });
             }
-            let what = format!("`thickness_nm` of layer {:?}", layer.name);
-            check_range(&what, layer.thickness_nm, THICKNESS_NM, "5 to 5000 nm")?;
             layers.list.push(layer);
-            let (material, dispersion) = layer.material.resolve()?;
-            let greatest_index = wavelengths_nm.iter().map(|&w| dispersion.at(w).re).fold(1.0, f64::max);
-            parameters.push(thickness(layer, material, scan_step_nm(shortest_nm, greatest_index, count)));
         }
         for _ in 0..count {
             layers.sequence.extend(first..layers.list.len());
@@ -246,6 +240,21 @@ fn declare_layers<'a>(
         only.symbol = "d".to_owned();
     }
     Ok(layers)
+}
+
+/// Checks a layer and declares its thickness; `count` is how often it repeats.
+pub(super) fn declare_thickness(
+    layer: &DesignLayer,
+    wavelengths_nm: &[f64],
+    count: usize,
+) -> Result<Parameter, ModelError> {
+    check_name("layer", &layer.name)?;
+    let what = format!("`thickness_nm` of layer {:?}", layer.name);
+    check_range(&what, layer.thickness_nm, THICKNESS_NM, "5 to 5000 nm")?;
+    let (material, dispersion) = layer.material.resolve()?;
+    let shortest_nm = wavelengths_nm.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest_index = wavelengths_nm.iter().map(|&w| dispersion.at(w).re).fold(1.0, f64::max);
+    Ok(thickness(layer, material, scan_step_nm(shortest_nm, greatest_index, count)))
 }
 
 /// Spacing at which a scan over a layer's thickness meets every minimum of a misfit.

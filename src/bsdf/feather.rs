@@ -10,7 +10,7 @@
 //! [`Bsdf::evaluate`] leaves it out, [`Bsdf::straight_through`] is `w_t`.
 //!
 //! **Barbs** are a [`cylinder`](super::cylinder) along x, or one with a [sponge](super::spongy_barb) inside. **Barbules**
-//! are cylinders at ± the barbule angle to the barb, or flat lamellae that carry a film or a stack, a [`CoatedBase`] whose
+//! are cylinders at ± the barbule angle to the barb, bare or with layers on them, or flat lamellae that carry a film or a stack, a [`CoatedBase`] whose
 //! normal is the vane's; then their angle does not matter and nothing goes through them.
 //!
 //! | parameter | symbol | unit | default | range |
@@ -41,7 +41,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use self::species::barb_share;
-use super::cylinder::{CylinderDesign, CylinderModel};
+use super::cylinder::{CylinderDesign, CylinderModel, FilmedCylinderDesign, FilmedCylinderModel};
 use super::oriented::Tangent;
 use super::spongy_barb::SpongyBarbModel;
 use super::{Bsdf, CoatedBase, Design, Direction, Model, ModelError};
@@ -94,7 +94,9 @@ impl BarbDesign {
 pub enum BarbuleDesign {
     /// Dielectric fibres at ± the barbule angle to the barb.
     Cylinder(CylinderDesign),
-    /// Flat plates in the vane that carry a film or a stack: an iridescent feather.
+    /// The same fibres with a film or a stack on their surface: an iridescent feather.
+    FilmedCylinder(FilmedCylinderDesign),
+    /// Flat plates in the vane that carry a film or a stack: an iridescent feather too.
     Lamella(Box<Design>),
 }
 
@@ -124,6 +126,9 @@ impl Feather {
         let barb = design.barb.model(wavelengths_nm)?;
         let (barbule, barbules_are_fibres): (Box<dyn Model>, _) = match &design.barbule {
             BarbuleDesign::Cylinder(design) => (Box::new(CylinderModel::new(design, wavelengths_nm)?), true),
+            BarbuleDesign::FilmedCylinder(design) => {
+                (Box::new(FilmedCylinderModel::new(design, wavelengths_nm)?), true)
+            }
             BarbuleDesign::Lamella(design) => (Box::new(CoatedBase::new(design, wavelengths_nm)?), false),
         };
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use crate::bsdf::cylinder::CylinderDesign;
+use crate::bsdf::cylinder::{CylinderDesign, FilmedCylinderDesign};
 use crate::bsdf::{
     Design, FeatherDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign,
     RoughPlasticDesign,
@@ -121,6 +121,8 @@ pub enum ModelFile {
     Lambertian(LambertianDesign),
     /// A dielectric fibre along the tangent, averaged over its width: a barb.
     Cylinder(CylinderDesign),
+    /// The same fibre with a film or a stack on its surface: an iridescent barbule.
+    FilmedCylinder(FilmedCylinderDesign),
     /// The same fibre with a sponge inside that scatters one band of wavelengths: a blue barb without iridescence.
     SpongyBarb(CylinderDesign),
     /// The vane of a feather: barbs along the tangent, barbules at an angle to them.

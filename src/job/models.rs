@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::JobError;
 use super::file::ModelFile;
-use crate::bsdf::cylinder::CylinderModel;
+use crate::bsdf::cylinder::{CylinderModel, FilmedCylinderModel};
 use crate::bsdf::spongy_barb::SpongyBarbModel;
 use crate::bsdf::{
     CoatedBase, Feather, GranierHeidrich, IridescentPlastic, Lambertian, MicrofacetInterface, Model, Oriented,
@@ -25,6 +25,7 @@ impl ModelFile {
             Self::GranierHeidrich(design) => Box::new(GranierHeidrich::new(design, wavelengths_nm)?),
             Self::Lambertian(design) => Box::new(Lambertian::new(design, wavelengths_nm)?),
             Self::Cylinder(design) => oriented(CylinderModel::new(design, wavelengths_nm)?),
+            Self::FilmedCylinder(design) => oriented(FilmedCylinderModel::new(design, wavelengths_nm)?),
             Self::SpongyBarb(design) => oriented(SpongyBarbModel::new(design, wavelengths_nm)?),
             Self::Feather(design) => oriented(Feather::new(design, wavelengths_nm)?),
             Self::ThinFilmLaw(_) => {
@@ -44,6 +45,7 @@ impl ModelFile {
             Self::GranierHeidrich(_) => &GRANIER_HEIDRICH,
             Self::Lambertian(_) => &LAMBERTIAN,
             Self::Cylinder(_) => &CYLINDER,
+            Self::FilmedCylinder(_) => &FILMED_CYLINDER,
             Self::SpongyBarb(_) => &SPONGY_BARB,
             Self::Feather(_) => &FEATHER,
             Self::ThinFilmLaw(_) => &THIN_FILM_LAW,
@@ -85,7 +87,7 @@ const WALTER: (&str, &str) = (
 );
 
 /// Every model, in the order in which `barbule models` lists them.
-const CARDS: [&ModelCard; 10] = [
+const CARDS: [&ModelCard; 11] = [
     &COATED_BASE,
     &MICROFACET,
     &ROUGH_PLASTIC,
@@ -93,6 +95,7 @@ const CARDS: [&ModelCard; 10] = [
     &GRANIER_HEIDRICH,
     &LAMBERTIAN,
     &CYLINDER,
+    &FILMED_CYLINDER,
     &SPONGY_BARB,
     &FEATHER,
     &THIN_FILM_LAW,
@@ -176,6 +179,20 @@ const CYLINDER: ModelCard = ModelCard {
     works: &[DEON, CHIANG],
 };
 
+const FILMED_CYLINDER: ModelCard = ModelCard {
+    kind: "filmed-cylinder",
+    text: "A dielectric fibre along the tangent (d'Eon et al. 2011; Chiang et al. 2016) with a film or a stack of layers on \
+           its surface: an iridescent barbule.",
+    usage: "Reads spectra at any four angles; `tangent_deg` says how the fibre lies. Its parameters are named after the \
+            layers of the job; `eta` is the index below them.",
+    example: "kind = \"filmed-cylinder\"\n\
+              layers = [\n    \
+                  { name = \"cortex\", material = \"keratin\", thickness_nm = 330.0 },\n    \
+                  { name = \"melanin\", material = \"bird_melanin\", thickness_nm = 120.0 },\n\
+              ]",
+    works: &[DEON, CHIANG],
+};
+
 const SPONGY_BARB: ModelCard = ModelCard {
     kind: "spongy-barb",
     text: "A dielectric fibre along the tangent (d'Eon et al. 2011; Chiang et al. 2016) with a sponge inside that scatters \
@@ -189,7 +206,7 @@ const FEATHER: ModelCard = ModelCard {
     kind: "feather",
     text: "The vane of a feather (Romeo Arroyo 2021): barbs along the tangent and barbules at an angle to both sides of \
            them, each weighted by the share of the area that it covers. Barbs and barbules are dielectric fibres (d'Eon et \
-           al. 2011; Chiang et al. 2016) or, as the job says, spongy barbs and coated lamellae.",
+           al. 2011; Chiang et al. 2016) or, as the job says, spongy barbs and barbules or lamellae with layers on them.",
     usage: "Reads spectra at any four angles; `tangent_deg` says how the barbs lie. `species` takes the barbs' share from \
             a table of 46 birds (Pap et al. 2015). `per_channel` of barb or barbule gives the parameters that it names one \
             value a wavelength.",

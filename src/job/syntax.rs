@@ -10,7 +10,7 @@ use serde_path_to_error::Segment;
 use toml::de::{DeTable, DeValue};
 
 use super::{JobError, JobFile};
-use crate::bsdf::cylinder::CylinderDesign;
+use crate::bsdf::cylinder::{CylinderDesign, FilmedCylinderDesign};
 use crate::bsdf::{
     Design, FeatherDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign,
     RoughPlasticDesign,
@@ -100,6 +100,7 @@ fn in_model(job: &toml::Value, slip: &Slip) -> Option<Slip> {
         "granier-heidrich" => deserialise::<GranierHeidrichDesign>(model).err()?,
         "lambertian" => deserialise::<LambertianDesign>(model).err()?,
         "cylinder" | "spongy-barb" => deserialise::<CylinderDesign>(model).err()?,
+        "filmed-cylinder" => deserialise::<FilmedCylinderDesign>(model).err()?,
         "feather" => deserialise::<FeatherDesign>(model).err()?,
         "thin-film-law" => deserialise::<ThinFilmLawDesign>(model).err()?,
         _ => return None,

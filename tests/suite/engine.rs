@@ -531,7 +531,7 @@ fn mistakes_are_sentences() {
         (vec![good.clone(), free(f64::NAN, -1.0, 1.0)], "start value NaN of `b`"),
         (vec![role(Role::Fixed(1.0)), role(Role::Fixed(1.0))], "no parameter is free"),
         (vec![good.clone(), role(Role::Fixed(f64::INFINITY))], "fixed value of `b` is inf"),
-        (vec![tied(&[(1, 1.0)]), tied(&[(0, 1.0)])], "no parameter is free"),
+        (vec![tied(&[(1, 1.0)]), tied(&[(0, 1.0)])], "`a` is tied to `b`, which is tied itself"),
         (vec![good.clone(), tied(&[(1, 1.0)])], "`b` is tied to `b`, which is tied itself"),
         (vec![good.clone(), tied(&[(7, 1.0)])], "`b` is tied to parameter number 7, but there are only 2"),
         (

@@ -1,17 +1,14 @@
 //! The vane of a feather against its parts, conservation of energy, its symmetries and the table of barbs.
 
-use std::f64::consts::{PI, TAU};
-
 use barbule::bsdf::cylinder::{CylinderDesign, CylinderModel};
 use barbule::bsdf::spongy_barb::SpongyBarbModel;
 use barbule::bsdf::{
     BarbDesign, BarbSpecies, BarbuleDesign, CoatedBase, Design, Direction, Feather, FeatherDesign, Model, ModelError,
 };
 use proptest::prelude::*;
-use rayon::prelude::*;
 
 use super::desk::{Desk, film_with};
-use super::directions::{RGB_NM, any_direction, any_direction_above, evaluate, spherical, values};
+use super::directions::{RGB_NM, any_direction, any_direction_above, evaluate, furnace, spherical, values};
 
 fn feather(design: &FeatherDesign) -> Feather {
     Feather::new(design, &RGB_NM).unwrap()
@@ -43,25 +40,6 @@ fn assert_near(found: &[f64], expected: &[f64]) {
         let difference = (found - expected).abs();
         assert!(difference <= ROUNDING * expected.abs() + 1e-15, "found {found}, expected {expected}: {difference:e}");
     }
-}
-
-/// ∫ f |n·ωi| dωi over the whole sphere at a fixed viewer, midpoints in inclination and azimuth: second order in
-/// the first, where f |n·ωi| = S has no kink, and exact for smooth functions in the second.
-fn furnace(model: &dyn Model, values: &[f64], outgoing: &Direction) -> f64 {
-    let (polar, azimuthal) = (300, 300);
-    let bound = model.bind(values);
-    let ring = |i: i32| {
-        let theta = (f64::from(i) + 0.5) * PI / f64::from(polar);
-        let mut value = [f64::NAN];
-        let at = |j: i32| {
-            let incoming = spherical(theta, (f64::from(j) + 0.5) * TAU / f64::from(azimuthal));
-            bound.evaluate(&incoming, outgoing, &mut value);
-            value[0] * theta.cos().abs() * theta.sin()
-        };
-        (0..azimuthal).map(at).sum::<f64>()
-    };
-    let rings: Vec<f64> = (0..polar).into_par_iter().map(ring).collect();
-    rings.iter().sum::<f64>() * (PI / f64::from(polar)) * (TAU / f64::from(azimuthal))
 }
 
 /// What goes straight through is no part of the integral: it is the share that is missing.
@@ -254,8 +232,8 @@ fn a_slip_in_a_fibre_or_feather_is_told_in_words() {
             ["line 16: model.barb", "`cilinder`", "mean `cylinder`"],
         ),
         (
-            "kind = \"feather\"\nspecies = \"Corvus corax\"\n",
-            ["model: `species` is \"Corvus corax\"", "the nearest", "Corvus"],
+            "kind = \"feather\"\nspecies = \"Corvus monedul\"\n",
+            ["model: `species` is \"Corvus monedul\"", "the nearest", "Corvus monedula"],
         ),
     ] {
         Desk::with("slip.toml", film_with(plain, model)).barbule("check slip.toml").complains(&parts);

@@ -11,6 +11,7 @@ mod desk;
 mod directions;
 mod engine;
 mod feather;
+mod filmed_cylinder;
 mod granier;
 mod jacobian;
 mod jobs;

@@ -23,6 +23,7 @@ use std::f64::consts::{FRAC_1_PI, FRAC_PI_2, PI};
 use super::FibreAngles;
 use super::azimuthal::{Density, Halves, distance_around};
 use super::quadrature::{Block, LANES, MOST_BLOCKS, PanelLengths, Rule, WIDTH_BLOCKS, WIDTH_RULE, WidthRule};
+use super::surface::{Surface, SurfaceShares};
 use crate::optics::elementary::{arc_sine_of_positive, exp_of_negative, sin_cos};
 
 /// Most breaks that [`kinks`] can find, with the two ends.
@@ -53,24 +54,11 @@ impl Refraction {
 
     /// Meets the surface at γ between 0 and π/2.
     #[inline(always)]
-    fn enter(&self, sin_gamma: f64, cos_gamma: f64) -> Entry {
-        let eta = self.eta;
+    fn enter(&self, surface: &impl Surface, sin_gamma: f64, cos_gamma: f64) -> Entry {
         let sin_gamma_t = sin_gamma * self.inverse_eta_prime;
         let cos_gamma_t = (1.0 - sin_gamma_t * sin_gamma_t).sqrt();
-
-        // Fresnel: with rₛ = a/b and rₚ = c/d, f = (rₛ² + rₚ²)/2, and 1 − r² = 4 η cosines / b² or d².
-        let cosine = self.cos_theta_o * cos_gamma;
-        let cosine_inside = self.cos_theta_t * cos_gamma_t;
-        let (a, b) = (cosine - eta * cosine_inside, cosine + eta * cosine_inside);
-        let (c, d) = (eta * cosine - cosine_inside, eta * cosine + cosine_inside);
-        let (a, b, c, d) = (a * a, b * b, c * c, d * d);
-        let inverse = 0.5 / (b * d);
-        Entry {
-            sin_gamma_t,
-            path: 2.0 * cos_gamma_t / self.cos_theta_t,
-            reflectance: (a * d + b * c) * inverse,
-            transmittance: 4.0 * eta * cosine * cosine_inside * (b + d) * inverse,
-        }
+        let shares = surface.meet(self.eta, self.cos_theta_o * cos_gamma, self.cos_theta_t * cos_gamma_t);
+        Entry { sin_gamma_t, path: 2.0 * cos_gamma_t / self.cos_theta_t, shares }
     }
 
     /// ψₚ at an angle γ and its derivative.
@@ -88,15 +76,13 @@ struct Entry {
     sin_gamma_t: f64,
     /// Length of one pass, in radii.
     path: f64,
-    /// f, unpolarised.
-    reflectance: f64,
-    /// 1 − f.
-    transmittance: f64,
+    shares: SurfaceShares,
 }
 
 /// The far field of one group of channels that share their index: writes Σₚ Mₚ Nₚ to `values`, one a channel.
-pub(super) struct FarField<'a, D> {
+pub(super) struct FarField<'a, D, S> {
     pub(super) density: D,
+    pub(super) surface: S,
     pub(super) panel_lengths: &'a PanelLengths,
     pub(super) refraction: Refraction,
     /// φ of the light minus that of the viewer, any real number.
@@ -108,7 +94,7 @@ pub(super) struct FarField<'a, D> {
     pub(super) values: &'a mut [f64],
 }
 
-impl<D: Density> pulp::NullaryFnOnce for FarField<'_, D> {
+impl<D: Density, S: Surface> pulp::NullaryFnOnce for FarField<'_, D, S> {
     type Output = ();
 
     #[inline(always)]
@@ -116,7 +102,7 @@ impl<D: Density> pulp::NullaryFnOnce for FarField<'_, D> {
         let [m_reflected, m_once, m_twice, m_later] = self.longitudinal;
         self.values.fill(0.0);
         if m_later > 0.0 {
-            let later = LaterPaths::new(&self.refraction, &WIDTH_RULE);
+            let later = LaterPaths::new(&self.refraction, &self.surface, &WIDTH_RULE);
             for (value, &sigma_a) in self.values.iter_mut().zip(self.sigma_a) {
                 *value = 0.5 * FRAC_1_PI * m_later * later.sum(sigma_a);
             }
@@ -137,7 +123,7 @@ impl<D: Density> pulp::NullaryFnOnce for FarField<'_, D> {
                 if active == [false; 3] {
                     continue;
                 }
-                let panel = Panel::new(&self.refraction, rule, middle, 0.5 * length);
+                let panel = Panel::new(&self.refraction, &self.surface, rule, middle, 0.5 * length);
                 let lobes = Lobes::new(&panel, self.density, phi, [m_reflected, m_once, m_twice], active);
                 for (value, &sigma_a) in self.values.iter_mut().zip(self.sigma_a) {
                     *value += lobes.reflected + lobes.transmitted(sigma_a, &panel.path[..panel.blocks]);
@@ -165,12 +151,12 @@ struct Panel {
     turn: [Block; MOST_BLOCKS],
     /// 2γt.
     turn_inside: [Block; MOST_BLOCKS],
-    /// Share of the fibre's width.
-    weight: [Block; MOST_BLOCKS],
-    /// f.
-    reflectance: [Block; MOST_BLOCKS],
-    /// (1 − f)² times the weight.
+    /// A₀ times the share of the fibre's width.
+    reflected: [Block; MOST_BLOCKS],
+    /// (1 − f)² times the share of the width, A₁ without absorption.
     entered: [Block; MOST_BLOCKS],
+    /// (1 − f)² f times the share of the width, A₂ without absorption.
+    entered_and_back: [Block; MOST_BLOCKS],
     /// Length of one pass, in radii.
     path: [Block; MOST_BLOCKS],
 }
@@ -179,27 +165,29 @@ const NOTHING: Block = [0.0; LANES];
 
 impl Panel {
     #[inline(always)]
-    fn new(refraction: &Refraction, rule: &Rule, middle: f64, half_length: f64) -> Self {
+    fn new(refraction: &Refraction, surface: &impl Surface, rule: &Rule, middle: f64, half_length: f64) -> Self {
         let mut panel = Self {
             blocks: rule.nodes.len(),
             turn: [NOTHING; MOST_BLOCKS],
             turn_inside: [NOTHING; MOST_BLOCKS],
-            weight: [NOTHING; MOST_BLOCKS],
-            reflectance: [NOTHING; MOST_BLOCKS],
+            reflected: [NOTHING; MOST_BLOCKS],
             entered: [NOTHING; MOST_BLOCKS],
+            entered_and_back: [NOTHING; MOST_BLOCKS],
             path: [NOTHING; MOST_BLOCKS],
         };
         for (block, (nodes, weights)) in rule.nodes.iter().zip(&rule.weights).enumerate() {
             for lane in 0..LANES {
                 let gamma = middle + half_length * nodes[lane];
                 let (sin_gamma, cos_gamma) = sin_cos(gamma);
-                let entry = refraction.enter(sin_gamma, cos_gamma);
+                let entry = refraction.enter(surface, sin_gamma, cos_gamma);
+                let shares = entry.shares;
                 let weight = 0.5 * half_length * weights[lane] * cos_gamma;
                 panel.turn[block][lane] = 2.0 * gamma;
                 panel.turn_inside[block][lane] = 2.0 * arc_sine_of_positive(entry.sin_gamma_t);
-                panel.weight[block][lane] = weight;
-                panel.reflectance[block][lane] = entry.reflectance;
-                panel.entered[block][lane] = weight * entry.transmittance * entry.transmittance;
+                let entered = weight * shares.transmittance * shares.transmittance;
+                panel.reflected[block][lane] = weight * shares.reflectance;
+                panel.entered[block][lane] = entered;
+                panel.entered_and_back[block][lane] = entered * shares.back;
                 panel.path[block][lane] = entry.path;
             }
         }
@@ -226,8 +214,7 @@ impl Lobes {
             let mut reflected = NOTHING;
             for block in 0..blocks {
                 for (lane, reflected) in reflected.iter_mut().enumerate() {
-                    let share = panel.weight[block][lane] * panel.reflectance[block][lane];
-                    *reflected += share * near.at(panel.turn[block][lane]);
+                    *reflected += panel.reflected[block][lane] * near.at(panel.turn[block][lane]);
                 }
             }
             lobes.reflected = m_reflected * sum(reflected);
@@ -244,8 +231,7 @@ impl Lobes {
             for block in 0..blocks {
                 for lane in 0..LANES {
                     let turn = (2.0 * panel.turn_inside[block][lane] - panel.turn[block][lane]).abs();
-                    let entered_and_back = panel.entered[block][lane] * panel.reflectance[block][lane];
-                    lobes.twice[block][lane] = m_twice * entered_and_back * near.at(turn);
+                    lobes.twice[block][lane] = m_twice * panel.entered_and_back[block][lane] * near.at(turn);
                 }
             }
         }
@@ -269,23 +255,25 @@ impl Lobes {
 /// Paths that are reflected inside twice or more, node by node over the width: each adds T³ entered / (1 − f T).
 struct LaterPaths {
     entered: [Block; WIDTH_BLOCKS],
-    transmittance: [Block; WIDTH_BLOCKS],
-    reflectance: [Block; WIDTH_BLOCKS],
+    /// f inside, and 1 − f.
+    back: [Block; WIDTH_BLOCKS],
+    not_back: [Block; WIDTH_BLOCKS],
     path: [Block; WIDTH_BLOCKS],
 }
 
 impl LaterPaths {
     #[inline(always)]
-    fn new(refraction: &Refraction, rule: &WidthRule) -> Self {
+    fn new(refraction: &Refraction, surface: &impl Surface, rule: &WidthRule) -> Self {
         let nothing = [NOTHING; WIDTH_BLOCKS];
-        let mut later = Self { entered: nothing, transmittance: nothing, reflectance: nothing, path: nothing };
+        let mut later = Self { entered: nothing, back: nothing, not_back: nothing, path: nothing };
         for block in 0..WIDTH_BLOCKS {
             for lane in 0..LANES {
-                let entry = refraction.enter(rule.sin_gamma[block][lane], rule.cos_gamma[block][lane]);
-                let entered_and_back = entry.transmittance * entry.reflectance;
+                let entry = refraction.enter(surface, rule.sin_gamma[block][lane], rule.cos_gamma[block][lane]);
+                let shares = entry.shares;
+                let entered_and_back = shares.transmittance * shares.back;
                 later.entered[block][lane] = rule.weights[block][lane] * entered_and_back * entered_and_back;
-                later.transmittance[block][lane] = entry.transmittance;
-                later.reflectance[block][lane] = entry.reflectance;
+                later.back[block][lane] = shares.back;
+                later.not_back[block][lane] = shares.not_back;
                 later.path[block][lane] = entry.path;
             }
         }
@@ -301,7 +289,7 @@ impl LaterPaths {
                 let pass = exp_of_negative(-sigma_a * self.path[block][lane]);
                 // 1 − f T without cancellation. It is 0 for a viewer along the fibre, where nothing enters: the smallest
                 // number, far below the rounding of any other case, makes 0/0 a 0.
-                let lost = self.transmittance[block][lane] + self.reflectance[block][lane] * (1.0 - pass);
+                let lost = self.not_back[block][lane] + self.back[block][lane] * (1.0 - pass);
                 *left += self.entered[block][lane] * pass * pass * pass / (lost + f64::MIN_POSITIVE);
             }
         }

@@ -25,9 +25,11 @@
 mod attenuation;
 mod azimuthal;
 mod far_field;
+mod filmed;
 mod longitudinal;
 mod near_field;
 mod quadrature;
+mod surface;
 mod tabulated;
 
 use schemars::JsonSchema;
@@ -40,6 +42,7 @@ use crate::pigment::{InversionError, solve_decreasing};
 
 pub use attenuation::Attenuation;
 pub use azimuthal::AzimuthalLobe;
+pub use filmed::{FilmedCylinderDesign, FilmedCylinderModel};
 pub use longitudinal::LongitudinalMapping;
 pub use tabulated::TabulatedCylinder;
 
@@ -47,6 +50,7 @@ use azimuthal::{NarrowLogistic, TrimmedLogistic, WrappedGaussian};
 use far_field::{FarField, Refraction};
 use longitudinal::Longitudinal;
 use quadrature::{Analyticity, PanelLengths};
+use surface::{BareSurface, Surface};
 
 /// Light and viewer as the fibre sees them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -253,7 +257,7 @@ impl Cylinder {
         for group in &self.groups {
             let (values, others) = rest.split_at_mut(group.sigma_a.len());
             rest = others;
-            self.sum_group(group, &group.sigma_a, angles, longitudinal, values);
+            self.sum_group(group, BareSurface, &group.sigma_a, angles, longitudinal, values);
         }
     }
 
@@ -261,6 +265,7 @@ impl Cylinder {
     fn sum_group(
         &self,
         group: &Group,
+        surface: impl Surface,
         sigma_a: &[f64],
         angles: &FibreAngles,
         longitudinal: [f64; 4],
@@ -271,13 +276,40 @@ impl Cylinder {
         let (refraction, phi) = (Refraction::new(group.eta, angles), angles.phi);
         match self.lobe {
             Lobe::Logistic(density) => {
-                arch.dispatch(FarField { density, panel_lengths, refraction, phi, longitudinal, sigma_a, values });
+                arch.dispatch(FarField {
+                    density,
+                    surface,
+                    panel_lengths,
+                    refraction,
+                    phi,
+                    longitudinal,
+                    sigma_a,
+                    values,
+                });
             }
             Lobe::Narrow(density) => {
-                arch.dispatch(FarField { density, panel_lengths, refraction, phi, longitudinal, sigma_a, values });
+                arch.dispatch(FarField {
+                    density,
+                    surface,
+                    panel_lengths,
+                    refraction,
+                    phi,
+                    longitudinal,
+                    sigma_a,
+                    values,
+                });
             }
             Lobe::Gaussian(density) => {
-                arch.dispatch(FarField { density, panel_lengths, refraction, phi, longitudinal, sigma_a, values });
+                arch.dispatch(FarField {
+                    density,
+                    surface,
+                    panel_lengths,
+                    refraction,
+                    phi,
+                    longitudinal,
+                    sigma_a,
+                    values,
+                });
             }
         }
     }
@@ -289,7 +321,7 @@ impl Cylinder {
         let mut channel = 0;
         for group in &self.groups {
             let mut value = [0.0];
-            self.sum_group(group, &[0.0], angles, [reflected, 0.0, 0.0, 0.0], &mut value);
+            self.sum_group(group, BareSurface, &[0.0], angles, [reflected, 0.0, 0.0, 0.0], &mut value);
             for &sigma_a in &group.sigma_a {
                 let mean = Attenuation::mean(&Refraction::new(group.eta, angles), sigma_a);
                 each(channel, value[0], mean.total() - mean.direct[0]);
