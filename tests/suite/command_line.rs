@@ -157,8 +157,11 @@ fn options_that_make_no_sense() {
         ("simulate film.toml --out film.toml", ["film.toml is what this job reads", "another name"]),
         ("simulate film.toml --set nonsense", ["'nonsense'", "expected NAME=VALUE"]),
         ("simulate film.toml --set film.thickness_nm=thick", ["`thick` is not a number", "--set"]),
-        ("simulate film.toml --set film.thicknes_nm=300", ["--set: there is no parameter", "mean `film.thickness_nm`"]),
-        ("simulate film.toml --set film.thickness_nm=-4", ["--set: found film.thickness_nm = -4", "from 5 to 5000"]),
+        (
+            "simulate film.toml --set film.thicknes_nm=300",
+            ["--set: film.thicknes_nm: this model and instrument have no such parameter", "mean `film.thickness_nm`"],
+        ),
+        ("simulate film.toml --set film.thickness_nm=-4", ["--set: film.thickness_nm: found -4", "from 5 to 5000"]),
         ("simulate film.toml --noise -1", ["--noise: found -1", "from 0 to below 1"]),
         ("schema --out file", ["cannot write file/job.schema.json", "may be written"]),
         ("modles", ["unrecognized subcommand", "'models'"]),
@@ -167,6 +170,15 @@ fn options_that_make_no_sense() {
     ] {
         desk.barbule(words).complains(&parts.map(|part| part.trim_end()));
     }
+}
+
+#[test]
+fn synthetic_readings_that_cannot_be() {
+    let twice = film_with("[15, 45, 70]", "[15, 45, 15]");
+    refused(&twice, &["film.toml, line 5: data.synthetic.mirror_deg", "found 15 twice"]);
+    let (data, _) = FILM.split_once("\"film.thickness_nm\" = 330").unwrap();
+    let black = format!("{data}albedo = 0\n[model]\nkind = \"lambertian\"\n");
+    refused(&black, &["film.toml, line 8: data.synthetic.noise", "the model reads 0", "or write 0"]);
 }
 
 #[test]

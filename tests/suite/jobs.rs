@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::desk::{Desk, replaced, shipped};
+use super::desk::{Desk, film_with, replaced, shipped};
 
 /// Free parameters of a case: name, value, standard error (NaN, which passes no comparison, where there is none).
 fn free(case: &Value) -> Vec<(&str, f64, f64)> {
@@ -75,6 +75,27 @@ fn a_simulated_table_is_fitted_back() {
     // A job that `new` guesses for the table reads it as it is: σ, four angles and all.
     desk.barbule("new table.csv").succeeds().prints("barbule check table.toml");
     desk.barbule("check table.toml").succeeds().prints("6 of 6 spectra, 462 readings; σ known");
+}
+
+/// A name with a comma was written bare, and shifted the cells of its row.
+#[test]
+fn simulated_peaks_can_be_read_whatever_their_names() {
+    let table = "id,angle,peak_nm\n\"teal, left\",15,560\n\"teal \"\"B\"\"\",30,548\n";
+    let desk = Desk::with("peaks.csv", table);
+    desk.barbule("new peaks.csv").succeeds();
+    desk.barbule("simulate peaks.toml --noise 0.01 --seed 2 --out again.csv").succeeds();
+    assert!(desk.read("again.csv").contains("\n\"teal, left\",15,0,15,180,"), "{}", desk.read("again.csv"));
+    desk.barbule("new again.csv").succeeds();
+    desk.barbule("check again.toml").succeeds().prints("2 of 2 peak wavelengths; σ known");
+}
+
+/// The fits without a film refused a tie to its thickness, after the fit with one had succeeded.
+#[test]
+fn a_tie_to_the_film_does_not_keep_it_from_being_judged() {
+    let tied = film_with("upper = 800 }", "upper = 800 }\nroughness = \"0.0003 * film.thickness_nm\"");
+    let desk = Desk::with("film.toml", tied);
+    desk.barbule("fit film.toml --out film").succeeds();
+    assert_eq!(desk.result("film")["cases"][0]["support"]["supported"], true);
 }
 
 #[test]
