@@ -46,7 +46,7 @@ fn layers_that_change_nothing_leave_the_bare_fibre() {
 }
 
 /// ½ ∫ Σ Aₚ dh from the transfer products themselves, by midpoints in γ: R out and, of what enters, the geometric series of
-/// the passes. An integral over the sphere cannot tell how the light is spread, but it sees every share.
+/// the passes; 4000 midpoints leave 6e-9. An integral over the sphere cannot tell how the light is spread, but it sees every share.
 fn albedo(layers: &[Layer], eta: f64, sigma_a: f64, sin_theta_o: f64, wavelength_nm: f64) -> f64 {
     let cos_theta_o = (1.0 - sin_theta_o * sin_theta_o).sqrt();
     let cos_theta_t = (1.0 - (sin_theta_o / eta).powi(2)).sqrt();
@@ -87,7 +87,7 @@ fn the_energy_is_that_of_the_layers() {
             let expected = albedo(layers, eta, sigma_a, outgoing.x, wavelength_nm);
             println!("{design} η {eta} σ {sigma_a}: {found}, expected {expected}");
             assert!((found - expected).abs() < 1e-4);
-            assert!(!white || (expected - 1.0).abs() < 1e-9, "clear layers take nothing away");
+            assert!(!white || (expected - 1.0).abs() < 1e-8, "clear layers take nothing away");
         }
     }
 }
