@@ -32,8 +32,8 @@ pub use engine::{check, fit};
 pub use error::FitError;
 pub use expression::{ExpressionError, parse_tie};
 pub use outcome::{
-    Bound, Estimate, Fit, Goodness, Loss, Minimum, OpenDirection, ProfilePoint, Settings, SigmaSource, Solver,
-    StopReason, TracePoint,
+    Bound, Estimate, Fit, Goodness, Loss, Minimum, OpenDirection, ProfilePoint, RIVAL_SHARE, Settings, SigmaSource,
+    Solver, StopReason, TracePoint,
 };
 pub use residuals::Residuals;
 pub use warnings::misfit;

@@ -237,3 +237,15 @@ pub struct Fit {
     /// What a reader must know, each a sentence.
     pub warnings: Vec<String>,
 }
+
+/// A minimum with more than this share of the best fit's weight is a rival: the data do not rule it out.
+pub const RIVAL_SHARE: f64 = 0.05;
+
+impl Fit {
+    /// The minima that the data do not rule out beside the best, with their places in [`Fit::minima`]: every one with more
+    /// than [`RIVAL_SHARE`] of the best one's weight.
+    pub fn rivals(&self) -> impl Iterator<Item = (usize, &Minimum)> {
+        let best = self.minima.first().map_or(f64::INFINITY, |best| best.weight);
+        self.minima.iter().enumerate().skip(1).filter(move |(_, minimum)| minimum.weight > RIVAL_SHARE * best)
+    }
+}

@@ -1,9 +1,7 @@
 //! What a reader must know before using the numbers, each a sentence: what was seen, and what to do.
 
 use super::outcome::{Bound, Fit, Goodness, Loss, SigmaSource, StopReason};
-
-/// A rival with more than this share of the best one's weight is spoken of.
-const RIVAL: f64 = 0.05;
+use crate::number::plain;
 
 /// The warnings of a result, the gravest first.
 pub(super) fn warnings(fit: &Fit) -> Vec<String> {
@@ -35,8 +33,8 @@ fn stop(fit: &Fit) -> Option<String> {
 
 fn rivals(fit: &Fit) -> Option<String> {
     let best = fit.minima.first()?.weight;
-    let rivals: Vec<f64> = fit.minima.iter().skip(1).map(|minimum| minimum.weight).collect();
-    let heavy = rivals.iter().filter(|weight| **weight > RIVAL * best).count();
+    let rivals: Vec<f64> = fit.rivals().map(|(_, minimum)| minimum.weight).collect();
+    let heavy = rivals.len();
     let largest = rivals.into_iter().fold(0.0, f64::max);
     (heavy > 0).then(|| {
         let (noun, verb) = if heavy == 1 { ("minimum", "has") } else { ("minima", "have") };
@@ -88,7 +86,8 @@ fn bounds(fit: &Fit) -> Vec<String> {
             };
             Some(format!(
                 "`{}` lies on its {side} bound {}; only one side of it can be told.",
-                estimate.name, estimate.value
+                estimate.name,
+                plain(estimate.value)
             ))
         })
         .collect()

@@ -1,11 +1,8 @@
 //! The answer in a sentence or two: value ± error, its rivals, what stays open.
 
 use super::outcome::{Case, CaseData, Outcome, ThicknessOrder};
-use crate::fit::{Bound, Estimate, Fit, Minimum, StopReason, misfit};
-use crate::number::{minus, with_error};
-
-/// A rival minimum with more than this share of the best one's weight is named.
-const RIVAL_SHARE: f64 = 0.05;
+use crate::fit::{Bound, Estimate, Fit, Minimum, RIVAL_SHARE, StopReason, misfit};
+use crate::number::{minus, to_place, with_error};
 
 /// Most parameters that a sentence can carry.
 const MOST_NAMED: usize = 3;
@@ -115,14 +112,14 @@ fn value_text(estimate: &Estimate) -> String {
     let unit = if estimate.unit.is_empty() { String::new() } else { format!(" {}", estimate.unit) };
     let name = format!("{} ({})", estimate.symbol, estimate.name);
     match (estimate.at_bound, estimate.interval_95) {
-        (Some(Bound::Lower), Some([_, upper])) => return format!("{name} below {upper:.4}{unit} (95 %)"),
-        (Some(Bound::Upper), Some([lower, _])) => return format!("{name} above {lower:.4}{unit} (95 %)"),
-        (Some(_), None) => return format!("{name} at its bound {:.4}{unit}", estimate.value),
+        (Some(Bound::Lower), Some([_, upper])) => return format!("{name} below {}{unit} (95 %)", to_place(upper, -4)),
+        (Some(Bound::Upper), Some([lower, _])) => return format!("{name} above {}{unit} (95 %)", to_place(lower, -4)),
+        (Some(_), None) => return format!("{name} at its bound {}{unit}", to_place(estimate.value, -4)),
         (None, _) => {}
     }
     match estimate.standard_error {
         Some(error) if !estimate.open => format!("{name} = {}{unit}", with_error(estimate.value, Some(error))),
-        _ => format!("{name} near {:.4}{unit}, not determined", estimate.value),
+        _ => format!("{name} near {}{unit}, not determined", to_place(estimate.value, -4)),
     }
 }
 
@@ -132,7 +129,7 @@ const MOST_RIVALS: usize = 4;
 /// A sentence on minima that the data cannot rule out, the heaviest first.
 fn rivals(fit: &Fit) -> Option<String> {
     let (best, others) = fit.minima.split_first()?;
-    let mut heavy: Vec<&Minimum> = others.iter().filter(|minimum| minimum.weight > RIVAL_SHARE * best.weight).collect();
+    let mut heavy: Vec<&Minimum> = fit.rivals().map(|(_, minimum)| minimum).collect();
     if heavy.is_empty() {
         let count = others.len();
         let noun = if count == 1 { "other minimum was" } else { "other minima were" };

@@ -3,7 +3,7 @@
 use super::chart::{Axis, AxisKind, Cell, Chart, Figure, Layer, Look, Map, Mark, Point, Series, length};
 use super::palette::{BLACK, Colour, GREY, INK, PALE, Scale, WHITE, is_light};
 use super::plot::{Align, Drawing, Shape, text_width};
-use super::ticks::{Tick, linear, logarithmic};
+use super::ticks::{Tick, linear, logarithmic, whole};
 
 const TITLE_SIZE: f64 = 14.0;
 const CELL_TITLE_SIZE: f64 = 12.0;
@@ -203,11 +203,6 @@ fn lay_chart(chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
             Layer::Level(at) => {
                 if let Some(y) = place_y(&chart.y, *at, frame) {
                     shapes.push(line(&[(frame.left, y), (frame.right, y)], GREY, 1.0));
-                }
-            }
-            Layer::Upright(at) => {
-                if let Some(x) = place_x(&chart.x, *at, frame) {
-                    stroke(&[(x, frame.top), (x, frame.bottom)], GREY, 1.0, true, shapes);
                 }
             }
             Layer::Note { x, y, text: note } => {
@@ -414,8 +409,9 @@ fn widest_y_tick(cell: &Cell) -> f64 {
 fn ticks(axis: &Axis, wanted: f64) -> Vec<Tick> {
     let (low, high) = (axis.low.min(axis.high), axis.low.max(axis.high));
     match &axis.kind {
-        AxisKind::Linear => linear(low, high, wanted.max(2.0)),
-        AxisKind::Logarithmic => logarithmic(low, high, wanted.max(2.0)),
+        AxisKind::Linear => linear(low, high, wanted),
+        AxisKind::Counts => whole(low, high, wanted),
+        AxisKind::Logarithmic => logarithmic(low, high, wanted),
         AxisKind::Bands(names) => names
             .iter()
             .enumerate()

@@ -1,16 +1,23 @@
 //! Angle × wavelength maps: measured, fitted, and their difference.
 
 use crate::job::{Case, CaseData, SpectrumFit};
+use crate::number::significant;
 use crate::report::angles;
-use crate::report::chart::{Axis, Cell, Chart, Figure, Layer, Map, PAGE_WIDTH, around_zero, extent, length};
+use crate::report::chart::{Axis, Cell, Chart, Figure, Layer, Map, PAGE_WIDTH, extent, length};
 use crate::report::palette::Scale;
 use crate::report::readings::{self, Reading, quantity_label};
 
 /// Columns of a map; more cannot be told apart at its width.
 const MOST_COLUMNS: usize = 100;
+/// The share of all values that a colour scale reaches over: one spike must not turn all the rest into one colour.
+const MOST_OF_ALL: f64 = 0.98;
 
 pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let CaseData::Spectra { quantity, spectra } = &case.data else { return Vec::new() };
+    // What the fit did not see is often what would outshine all the rest: gloss, grazing angles.
+    let fitted_spectra: Vec<SpectrumFit> = spectra.iter().filter(|s| s.fitted).cloned().collect();
+    let left_out = spectra.len() - fitted_spectra.len();
+    let spectra = &fitted_spectra;
     if spectra.len() < 2 {
         return Vec::new();
     }
@@ -27,9 +34,13 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     };
     let (measured, fitted) = (rows(|r| r.measured), rows(|r| r.model));
     let residual = rows(Reading::residual);
-    let (low, high) = extent(measured.iter().chain(&fitted).flatten().flatten().copied());
-    let readings_scale = Scale::Sequential { low: low.min(0.0), high };
-    let residual_scale = Scale::Diverging { limit: around_zero(residual.iter().flatten().flatten().copied()).1 };
+    let readings = || measured.iter().chain(&fitted).flatten().flatten().copied();
+    let residuals = || residual.iter().flatten().flatten().copied();
+    let readings_scale = Scale::Sequential {
+        low: at_share(readings(), 1.0 - MOST_OF_ALL).min(0.0),
+        high: at_share(readings(), MOST_OF_ALL),
+    };
+    let residual_scale = Scale::Diverging { limit: at_share(residuals().map(f64::abs), MOST_OF_ALL) };
     let height = (length(names.len()) * 15.0).clamp(120.0, 360.0);
     let is_mirror = spectra.iter().all(|s| angles::is_mirror(&s.geometry));
     let y_label = if is_mirror { "inclination θ" } else { "θᵢ → θₒ, φ" };
@@ -48,24 +59,56 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
             })],
         }],
     };
-    let label = quantity_label(*quantity);
+    let label = clipped_label(quantity_label(*quantity), readings_scale, extent(readings()));
+    let residual_label = clipped_label("model − measured", residual_scale, extent(residuals()));
+    let not_fitted = match left_out {
+        0 => String::new(),
+        1 => "One spectrum that was not fitted is left out.".to_owned(),
+        many => format!("{many} spectra that were not fitted are left out."),
+    };
     let caption = [
+        not_fitted,
         selection.text.unwrap_or_default(),
-        "Measured and fitted share one scale; residual is model − measured. Hatched: no reading, or masked.".to_owned(),
-    ]
-    .join(" ");
+        "Measured and fitted share one scale; residual is model − measured. Scales reach over 98 % of the values; what is \
+         beyond has the colour of the end. Hatched: no reading, or masked."
+            .to_owned(),
+    ];
+    let caption = caption.iter().filter(|s| !s.is_empty()).cloned().collect::<Vec<_>>().join(" ");
     vec![Figure {
         name: "maps".to_owned(),
         title: "Angle × wavelength".to_owned(),
-        caption: caption.trim().to_owned(),
+        caption,
         width: PAGE_WIDTH,
         columns: 3,
         cells: vec![
-            cell("measured", measured, readings_scale, label),
-            cell("fitted", fitted, readings_scale, label),
-            cell("residual", residual, residual_scale, "model − measured"),
+            cell("measured", measured, readings_scale, &label),
+            cell("fitted", fitted, readings_scale, &label),
+            cell("residual", residual, residual_scale, &residual_label),
         ],
     }]
+}
+
+/// The value below which this share of the values lies; 1 where there is none above 0, so that a scale has an extent.
+fn at_share(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the list")]
+    let place = (share * length(sorted.len().saturating_sub(1))).round() as usize;
+    sorted.get(place).copied().filter(|v| *v != 0.0).unwrap_or(1.0)
+}
+
+/// The label of a colour bar, which says where values lie beyond its ends.
+fn clipped_label(label: &str, scale: Scale, (lowest, highest): (f64, f64)) -> String {
+    let (low, high) = scale.range();
+    // The ends of a scale are written short; what is beyond by less is not beyond to the eye.
+    let slack = 1e-3 * (high - low);
+    match (lowest < low - slack, highest > high + slack) {
+        (false, false) => label.to_owned(),
+        (true, true) if low == -high => format!("{label}; beyond ±{}: clipped", significant(high, 2)),
+        (true, true) => format!("{label}; below {}, above {}: clipped", significant(low, 2), significant(high, 2)),
+        (true, false) => format!("{label}; below {}: clipped", significant(low, 2)),
+        (false, true) => format!("{label}; above {}: clipped", significant(high, 2)),
+    }
 }
 
 /// The mean of a spectrum's readings in each column, and the nearest one where a column falls between two readings.
