@@ -118,6 +118,8 @@ pub(crate) struct Map {
     pub(crate) scale: Scale,
     /// What the colours mean, with unit, beside the colour bar.
     pub(crate) label: String,
+    /// Which values have no colour of their own, below the label; empty where all have.
+    pub(crate) clipped: String,
     /// Whether each value is written in its cell.
     pub(crate) with_numbers: bool,
 }

@@ -351,7 +351,13 @@ fn colour_bar(map: &Map, frame: Frame, top: f64, shapes: &mut Vec<Shape>) -> f64
     let at = ((bar.left + bar.right) / 2.0, bar.bottom + TICK_LENGTH + TICK_ROW_HEIGHT + 5.0);
     let label = shortened(&map.label, LABEL_SIZE, false, bar.width() + 40.0);
     shapes.push(text(label, at, LABEL_SIZE, Align::Middle).into());
-    at.1 + LABEL_ROW_HEIGHT / 2.0
+    if map.clipped.is_empty() {
+        return at.1 + LABEL_ROW_HEIGHT / 2.0;
+    }
+    let below = (at.0, at.1 + LABEL_ROW_HEIGHT - 2.0);
+    let clipped = shortened(&map.clipped, TICK_SIZE, false, bar.width() + 40.0);
+    shapes.push(text(clipped, below, TICK_SIZE, Align::Middle).into());
+    below.1 + LABEL_ROW_HEIGHT / 2.0
 }
 
 fn x_ticks(axis: &Axis, frame: Frame, shapes: &mut Vec<Shape>) {

@@ -135,7 +135,8 @@ fn paint<B: DrawingBackend>(
                     area.draw(&PathElement::new(all(points), style))
                 } else {
                     let points = all(points);
-                    let radius = whole(f64::from(stroke_width) / 2.0);
+                    // One pixel under the line's width, or the joints of a smooth curve stand out as beads.
+                    let radius = i32::try_from(stroke_width / 2).unwrap_or(i32::MAX) - 1;
                     points.windows(2).try_for_each(|ends| area.draw(&PathElement::new(ends.to_vec(), style))).and_then(
                         |()| {
                             let mut joints = points[1..points.len() - 1].iter();

@@ -44,7 +44,7 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let height = (length(names.len()) * 15.0).clamp(120.0, 360.0);
     let is_mirror = spectra.iter().all(|s| angles::is_mirror(&s.geometry));
     let y_label = if is_mirror { "inclination θ" } else { "θᵢ → θₒ, φ" };
-    let cell = |title: &str, rows: Vec<Vec<Option<f64>>>, scale: Scale, label: &str| Cell {
+    let cell = |title: &str, rows: Vec<Vec<Option<f64>>>, scale: Scale, label: &str, clipped: &str| Cell {
         title: title.to_owned(),
         charts: vec![Chart {
             x: Axis::linear("wavelength (nm)", wavelengths),
@@ -55,12 +55,14 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
                 rows,
                 scale,
                 label: label.to_owned(),
+                clipped: clipped.to_owned(),
                 with_numbers: false,
             })],
         }],
     };
-    let label = clipped_label(quantity_label(*quantity), readings_scale, extent(readings()));
-    let residual_label = clipped_label("model − measured", residual_scale, extent(residuals()));
+    let label = quantity_label(*quantity);
+    let readings_clipped = clipped(readings_scale, extent(readings()));
+    let residuals_clipped = clipped(residual_scale, extent(residuals()));
     let not_fitted = match left_out {
         0 => String::new(),
         1 => "One spectrum that was not fitted is left out.".to_owned(),
@@ -81,9 +83,9 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         width: PAGE_WIDTH,
         columns: 3,
         cells: vec![
-            cell("measured", measured, readings_scale, &label),
-            cell("fitted", fitted, readings_scale, &label),
-            cell("residual", residual, residual_scale, &residual_label),
+            cell("measured", measured, readings_scale, label, &readings_clipped),
+            cell("fitted", fitted, readings_scale, label, &readings_clipped),
+            cell("residual", residual, residual_scale, "model − measured", &residuals_clipped),
         ],
     }]
 }
@@ -97,17 +99,17 @@ fn at_share(values: impl Iterator<Item = f64>, share: f64) -> f64 {
     sorted.get(place).copied().filter(|v| *v != 0.0).unwrap_or(1.0)
 }
 
-/// The label of a colour bar, which says where values lie beyond its ends.
-fn clipped_label(label: &str, scale: Scale, (lowest, highest): (f64, f64)) -> String {
+/// Which values lie beyond the ends of a scale.
+fn clipped(scale: Scale, (lowest, highest): (f64, f64)) -> String {
     let (low, high) = scale.range();
-    // The ends of a scale are written short; what is beyond by less is not beyond to the eye.
+    // The ends are written short; what is beyond by less is not beyond to the eye.
     let slack = 1e-3 * (high - low);
+    let [below, above] = [low, high].map(|end| significant(end, 2));
     match (lowest < low - slack, highest > high + slack) {
-        (false, false) => label.to_owned(),
-        (true, true) if low == -high => format!("{label}; beyond ±{}: clipped", significant(high, 2)),
-        (true, true) => format!("{label}; below {}, above {}: clipped", significant(low, 2), significant(high, 2)),
-        (true, false) => format!("{label}; below {}: clipped", significant(low, 2)),
-        (false, true) => format!("{label}; above {}: clipped", significant(high, 2)),
+        (false, false) => String::new(),
+        (true, true) => format!("below {below}, above {above}: clipped"),
+        (true, false) => format!("below {below}: clipped"),
+        (false, true) => format!("above {above}: clipped"),
     }
 }
 

@@ -8,7 +8,7 @@ use crate::report::chart::{
 use crate::report::palette::{BLACK, GREEN, SKY, VERMILION};
 use crate::report::readings::{self, quantity_label, quantity_note};
 
-const MEASURED: Look = Look::Line { colour: SKY, width: 3.2, dashed: false };
+const MEASURED: Look = Look::Line { colour: SKY, width: 2.6, dashed: false };
 const FITTED: Look = Look::Line { colour: BLACK, width: 1.3, dashed: false };
 const PREDICTED: Look = Look::Line { colour: VERMILION, width: 1.5, dashed: true };
 const MASKED: Look = Look::Marks { colour: VERMILION, mark: Mark::Triangle, open: true };
