@@ -143,7 +143,7 @@ fn sums_of_squares_and_errors_have_the_units_of_the_readings() {
 fn every_y_axis_has_at_least_two_labels() {
     let minus = |text: &str| text.replace('−', "-");
     for (_, folder) in all_reports() {
-        for name in ["spectra", "support", "profile", "convergence"] {
+        for name in ["spectra", "profile", "convergence"] {
             let Ok(svg) = fs::read_to_string(folder.join(format!("plots/{name}.svg"))) else { continue };
             // Labels right-aligned against their axis stand in one column; each axis's run rises from the bottom up.
             let ends = markup::end_aligned(&svg);
