@@ -1,6 +1,7 @@
 //! What a reader must know before using the numbers, each a sentence: what was seen, and what to do.
 
 use super::outcome::{Bound, Fit, Goodness, Loss, SigmaSource, StopReason};
+use crate::number::plain;
 
 /// The warnings of a result, the gravest first.
 pub(super) fn warnings(fit: &Fit) -> Vec<String> {
@@ -95,7 +96,8 @@ fn bounds(fit: &Fit) -> Vec<String> {
             };
             Some(format!(
                 "`{}` lies on its {side} bound {}; only one side of it can be told.",
-                estimate.name, estimate.value
+                estimate.name,
+                plain(estimate.value)
             ))
         })
         .collect()

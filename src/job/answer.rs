@@ -2,7 +2,7 @@
 
 use super::outcome::{Case, CaseData, Outcome, PeakFit, ThicknessOrder};
 use crate::fit::{Bound, Estimate, Fit, Minimum, RIVAL_SHARE, StopReason, misfit};
-use crate::number::{minus, with_error};
+use crate::number::{minus, to_place, with_error};
 
 /// Most parameters that a sentence can carry.
 const MOST_NAMED: usize = 3;
@@ -200,7 +200,7 @@ fn value_text(estimate: &Estimate) -> String {
     }
     match estimate.standard_error {
         Some(error) if !estimate.open => format!("{name} = {}{unit}", rounded(estimate.value, Some(error))),
-        _ => format!("{name} near {:.4}{unit}, not determined", estimate.value),
+        _ => format!("{name} near {}{unit}, not determined", to_place(estimate.value, -4)),
     }
 }
 

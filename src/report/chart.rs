@@ -52,6 +52,8 @@ pub(crate) struct Axis {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum AxisKind {
     Linear,
+    /// Linear, with ticks at whole numbers only.
+    Counts,
     Logarithmic,
     /// One band each, the first from 0 to 1. Where bands are narrow, some go without their label.
     Bands(Vec<String>),
@@ -64,8 +66,6 @@ pub(crate) enum Layer {
     Map(Map),
     /// A thin line across the chart at this y.
     Level(f64),
-    /// A thin dashed line up the chart at this x.
-    Upright(f64),
     /// A short text above a point; left out where it would cover another.
     Note {
         x: f64,
@@ -117,6 +117,8 @@ pub(crate) struct Map {
     pub(crate) scale: Scale,
     /// What the colours mean, with unit, beside the colour bar.
     pub(crate) label: String,
+    /// Which values have no colour of their own, below the label; empty where all have.
+    pub(crate) clipped: String,
     /// Whether each value is written in its cell.
     pub(crate) with_numbers: bool,
 }
@@ -124,6 +126,11 @@ pub(crate) struct Map {
 impl Axis {
     pub(crate) fn linear(label: impl Into<String>, (low, high): (f64, f64)) -> Self {
         Self { label: label.into(), low, high, kind: AxisKind::Linear }
+    }
+
+    /// For numbers of things: whole ticks only.
+    pub(crate) fn counts(label: impl Into<String>, (low, high): (f64, f64)) -> Self {
+        Self { label: label.into(), low, high, kind: AxisKind::Counts }
     }
 
     pub(crate) fn logarithmic(label: impl Into<String>, (low, high): (f64, f64)) -> Self {
@@ -144,7 +151,7 @@ impl Axis {
     pub(crate) fn share(&self, value: f64) -> Option<f64> {
         let share = match self.kind {
             AxisKind::Logarithmic => (value / self.low).ln() / (self.high / self.low).ln(),
-            AxisKind::Linear | AxisKind::Bands(_) => (value - self.low) / (self.high - self.low),
+            AxisKind::Linear | AxisKind::Counts | AxisKind::Bands(_) => (value - self.low) / (self.high - self.low),
         };
         share.is_finite().then_some(share)
     }

@@ -71,7 +71,7 @@ fn map_table(charts: &[(&str, &Chart)], x: &str, y: &str, value: &str) -> Result
         for (index, row) in map.rows.iter().enumerate() {
             let row_name = match &chart.y.kind {
                 AxisKind::Bands(names) => names.get(index).cloned().unwrap_or_default(),
-                AxisKind::Linear | AxisKind::Logarithmic => index.to_string(),
+                AxisKind::Linear | AxisKind::Counts | AxisKind::Logarithmic => index.to_string(),
             };
             for (column, cell) in row.iter().enumerate() {
                 let column_name = match (&chart.x.kind, map.borders.get(column..column + 2)) {

@@ -3,7 +3,7 @@
 use super::chart::{Axis, AxisKind, Cell, Chart, Figure, Layer, Look, Map, Mark, Point, Series, length};
 use super::palette::{BLACK, Colour, GREY, INK, PALE, Scale, WHITE, is_light};
 use super::plot::{Align, Drawing, Shape, text_width};
-use super::ticks::{Tick, linear, logarithmic};
+use super::ticks::{Tick, linear, logarithmic, whole};
 
 const TITLE_SIZE: f64 = 14.0;
 const CELL_TITLE_SIZE: f64 = 12.0;
@@ -205,11 +205,6 @@ fn lay_chart(chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
                     shapes.push(line(&[(frame.left, y), (frame.right, y)], GREY, 1.0));
                 }
             }
-            Layer::Upright(at) => {
-                if let Some(x) = place_x(&chart.x, *at, frame) {
-                    stroke(&[(x, frame.top), (x, frame.bottom)], GREY, 1.0, true, shapes);
-                }
-            }
             Layer::Note { x, y, text: note } => {
                 let (Some(x), Some(y)) = (place_x(&chart.x, *x, frame), place_y(&chart.y, *y, frame)) else { continue };
                 let half = text_width(note, TICK_SIZE, false) / 2.0;
@@ -356,7 +351,13 @@ fn colour_bar(map: &Map, frame: Frame, top: f64, shapes: &mut Vec<Shape>) -> f64
     let at = ((bar.left + bar.right) / 2.0, bar.bottom + TICK_LENGTH + TICK_ROW_HEIGHT + 5.0);
     let label = shortened(&map.label, LABEL_SIZE, false, bar.width() + 40.0);
     shapes.push(text(label, at, LABEL_SIZE, Align::Middle).into());
-    at.1 + LABEL_ROW_HEIGHT / 2.0
+    if map.clipped.is_empty() {
+        return at.1 + LABEL_ROW_HEIGHT / 2.0;
+    }
+    let below = (at.0, at.1 + LABEL_ROW_HEIGHT - 2.0);
+    let clipped = shortened(&map.clipped, TICK_SIZE, false, bar.width() + 40.0);
+    shapes.push(text(clipped, below, TICK_SIZE, Align::Middle).into());
+    below.1 + LABEL_ROW_HEIGHT / 2.0
 }
 
 fn x_ticks(axis: &Axis, frame: Frame, shapes: &mut Vec<Shape>) {
@@ -414,8 +415,9 @@ fn widest_y_tick(cell: &Cell) -> f64 {
 fn ticks(axis: &Axis, wanted: f64) -> Vec<Tick> {
     let (low, high) = (axis.low.min(axis.high), axis.low.max(axis.high));
     match &axis.kind {
-        AxisKind::Linear => linear(low, high, wanted.max(2.0)),
-        AxisKind::Logarithmic => logarithmic(low, high, wanted.max(2.0)),
+        AxisKind::Linear => linear(low, high, wanted),
+        AxisKind::Counts => whole(low, high, wanted),
+        AxisKind::Logarithmic => logarithmic(low, high, wanted),
         AxisKind::Bands(names) => names
             .iter()
             .enumerate()

@@ -53,7 +53,6 @@ struct ComparisonRow {
     text: String,
     parameters: Vec<String>,
     rms: String,
-    verdict: String,
 }
 
 impl ComparisonRow {
@@ -63,9 +62,8 @@ impl ComparisonRow {
             anchor: anchor(index),
             name: case.name.clone(),
             text: case.text.clone(),
-            parameters: tables::main_parameters(&case.fit),
+            parameters: tables::main_parameters(case),
             rms: readings::rms(case).unwrap_or_default(),
-            verdict: case.answer.clone(),
         }
     }
 }
@@ -102,9 +100,9 @@ impl<'a> CaseView<'a> {
             swatches: swatch::of(case).map(|s| SwatchTable::new(&s)),
             orders: tables::orders(&case.orders),
             has_truth: outcome.synthetic.is_some(),
-            parameters: tables::parameters(&case.fit, outcome.synthetic.as_ref(), false),
-            fixed: tables::parameters(&case.fit, outcome.synthetic.as_ref(), true),
-            minima: tables::minima(&case.fit),
+            parameters: tables::parameters(case, outcome.synthetic.as_ref(), false),
+            fixed: tables::parameters(case, outcome.synthetic.as_ref(), true),
+            minima: tables::minima(case),
             strong_correlations: tables::strong_correlations(&case.fit),
             open_directions: case.fit.open_directions.iter().map(|d| d.text.as_str()).collect(),
             support: case.support.as_ref().map(SupportView::new),

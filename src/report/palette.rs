@@ -13,6 +13,7 @@ pub(crate) const GREY: Colour = RGBColor(140, 140, 140);
 pub(crate) const PALE: Colour = RGBColor(228, 228, 228);
 pub(crate) const SKY: Colour = RGBColor(86, 180, 233);
 pub(crate) const BLUE: Colour = RGBColor(0, 114, 178);
+pub(crate) const GREEN: Colour = RGBColor(0, 158, 115);
 pub(crate) const VERMILION: Colour = RGBColor(213, 94, 0);
 
 /// What a map's colours mean.

@@ -80,12 +80,12 @@ pub(crate) fn svg(drawing: &Drawing, label: &str) -> Result<String, PaintError> 
     let mut text = String::new();
     {
         let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-        paint(&area, drawing, SVG_UNITS)?;
+        paint(&area, drawing, SVG_UNITS, true)?;
         area.present().map_err(failed)?;
     }
     let painted = format!("<svg width=\"{}\" height=\"{}\"", size.0, size.1);
     let shown = format!(
-        "<svg role=\"img\" aria-label=\"{}\" width=\"{}\" height=\"{}\"",
+        "<svg role=\"img\" aria-label=\"{}\" stroke-linejoin=\"round\" width=\"{}\" height=\"{}\"",
         escaped(label),
         drawing.width,
         drawing.height
@@ -102,7 +102,7 @@ pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PaintError> {
     let mut painted = RgbImage::new(width, height);
     {
         let area = BitMapBackend::with_buffer(&mut painted, (width, height)).into_drawing_area();
-        paint(&area, drawing, scale)?;
+        paint(&area, drawing, scale, false)?;
         area.present().map_err(failed)?;
     }
     let mut bytes = Vec::new();
@@ -115,10 +115,13 @@ pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PaintError> {
 /// plotters takes a font's size as its line height, 1.24 of the em that typographers name.
 const FONT_SIZE_TO_EM: f64 = 1.24;
 
+/// Paints every shape. A backend that does not round the joints of a line lets the tip of a sharp spike shoot far beyond
+/// its point; there a wide line is painted as its segments with a disc at each joint.
 fn paint<B: DrawingBackend>(
     area: &DrawingArea<B, plotters::coord::Shift>,
     drawing: &Drawing,
     scale: i32,
+    rounds_joints: bool,
 ) -> Result<(), PaintError> {
     let at = |(x, y): (f64, f64)| (whole(x * f64::from(scale)), whole(y * f64::from(scale)));
     let all = |points: &[(f64, f64)]| points.iter().map(|p| at(*p)).collect::<Vec<_>>();
@@ -128,7 +131,19 @@ fn paint<B: DrawingBackend>(
             Shape::Line { points, colour, width } => {
                 let stroke_width = whole(width * f64::from(scale)).max(1).unsigned_abs();
                 let style = ShapeStyle { color: colour.to_rgba(), filled: false, stroke_width };
-                area.draw(&PathElement::new(all(points), style))
+                if rounds_joints || stroke_width < 2 || points.len() < 3 {
+                    area.draw(&PathElement::new(all(points), style))
+                } else {
+                    let points = all(points);
+                    // One pixel under the line's width, or the joints of a smooth curve stand out as beads.
+                    let radius = i32::try_from(stroke_width / 2).unwrap_or(i32::MAX) - 1;
+                    points.windows(2).try_for_each(|ends| area.draw(&PathElement::new(ends.to_vec(), style))).and_then(
+                        |()| {
+                            let mut joints = points[1..points.len() - 1].iter();
+                            joints.try_for_each(|joint| area.draw(&Circle::new(*joint, radius, colour.filled())))
+                        },
+                    )
+                }
             }
             Shape::Polygon { points, colour } => area.draw(&Polygon::new(all(points), colour.filled())),
             Shape::Rectangle { from, to, colour } => area.draw(&Rectangle::new([at(*from), at(*to)], colour.filled())),

@@ -45,28 +45,47 @@ pub(crate) fn quantity_note(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Unit of what was measured, as it follows a number.
-fn quantity_unit(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Brdf | Quantity::BsdfCos => "/sr",
-        Quantity::Reflectance => "",
+/// Units of a case's readings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Units {
+    /// As it follows a number, its space included.
+    pub(crate) following: &'static str,
+    /// As a heading says it; empty for a pure number.
+    pub(crate) name: &'static str,
+    /// That of the squared readings.
+    pub(crate) squared: &'static str,
+}
+
+/// Units of what a case's fit compares.
+pub(crate) fn units(case: &Case) -> Units {
+    match &case.data {
+        CaseData::Spectra { quantity: Quantity::Brdf | Quantity::BsdfCos, .. } => {
+            Units { following: "/sr", name: "1/sr", squared: "1/sr²" }
+        }
+        CaseData::Spectra { quantity: Quantity::Reflectance, .. } => Units { following: "", name: "", squared: "" },
+        CaseData::Peaks { .. } => Units { following: " nm", name: "nm", squared: "nm²" },
     }
+}
+
+/// A quantity's name with its unit in brackets, as a heading has it.
+pub(crate) fn labelled(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
 }
 
 /// Root mean square of model minus reading over what the fit saw, with its unit.
 pub(crate) fn rms(case: &Case) -> Option<String> {
-    let (residuals, unit): (Vec<f64>, &str) = match &case.data {
-        CaseData::Spectra { quantity, spectra } => {
-            (spectra.iter().filter(|s| s.fitted).flat_map(of).map(|r| r.residual()).collect(), quantity_unit(*quantity))
+    let residuals: Vec<f64> = match &case.data {
+        CaseData::Spectra { spectra, .. } => {
+            spectra.iter().filter(|s| s.fitted).flat_map(of).map(|r| r.residual()).collect()
         }
         CaseData::Peaks { peaks, .. } => {
             let fitted = peaks.iter().filter(|p| p.fitted);
-            (fitted.filter_map(|p| Some(p.model_nm? - p.measured_nm)).collect(), " nm")
+            fitted.filter_map(|p| Some(p.model_nm? - p.measured_nm)).collect()
         }
     };
     if residuals.is_empty() {
         return None;
     }
     let mean = residuals.iter().map(|r| r * r).sum::<f64>() / super::chart::length(residuals.len());
-    Some(format!("{}{unit}", crate::number::significant(mean.sqrt(), 3)))
+    Some(format!("{}{}", crate::number::significant(mean.sqrt(), 3), units(case).following))
 }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::readings;
-use crate::fit::{Bound, Estimate, Fit, Goodness, Minimum, SigmaSource, StopReason};
+use super::readings::{self, labelled};
+use crate::fit::{Bound, Estimate, Fit, Goodness, Loss, Minimum, RIVAL_SHARE, SigmaSource, StopReason};
 use crate::job::{Case, ThicknessOrder, Truth};
 use crate::number::{beside_error, count, percent, plain, significant, with_error};
 
@@ -21,7 +21,7 @@ pub(crate) struct ParameterRow {
     pub(crate) symbol: String,
     pub(crate) name: String,
     pub(crate) text: String,
-    pub(crate) unit: String,
+    /// Value ± error with unit.
     pub(crate) value: String,
     pub(crate) percent: String,
     pub(crate) interval: String,
@@ -37,12 +37,17 @@ pub(crate) struct ParameterRow {
 }
 
 /// The parameters that are held fixed, or all the others, with the truth beside the fit where it is known.
-pub(crate) fn parameters(fit: &Fit, truth: Option<&Truth>, are_fixed: bool) -> Vec<ParameterRow> {
-    let chosen = fit.estimates.iter().filter(|e| (e.role == "fixed") == are_fixed);
-    chosen.map(|e| parameter(e, truth.and_then(|t| t.values.get(&e.name).copied()))).collect()
+pub(crate) fn parameters(case: &Case, truth: Option<&Truth>, are_fixed: bool) -> Vec<ParameterRow> {
+    let chosen = case.fit.estimates.iter().filter(|e| (e.role == "fixed") == are_fixed);
+    chosen.map(|e| parameter(case, e, truth.and_then(|t| t.values.get(&e.name).copied()))).collect()
 }
 
-fn parameter(e: &Estimate, truth: Option<f64>) -> ParameterRow {
+/// Whether the value is the thickness under one of several orders of interference, between which the data do not decide.
+fn is_one_of_several_orders(case: &Case, e: &Estimate) -> bool {
+    case.orders.len() > 1 && e.role == "free" && e.name.ends_with(".thickness_nm")
+}
+
+fn parameter(case: &Case, e: &Estimate, truth: Option<f64>) -> ParameterRow {
     let error = e.standard_error;
     let beside = |v: f64| beside_error(v, error);
     let range = |[low, high]: [f64; 2], write: &dyn Fn(f64) -> String| format!("{} to {}", write(low), write(high));
@@ -60,15 +65,16 @@ fn parameter(e: &Estimate, truth: Option<f64>) -> ParameterRow {
         }
         None => {}
     }
-    if e.open {
+    if is_one_of_several_orders(case, e) {
+        notes.push("One of several orders, see above.".to_owned());
+    } else if e.open {
         notes.push("Open: the data do not determine it.".to_owned());
     }
     ParameterRow {
         symbol: e.symbol.clone(),
         name: e.name.clone(),
         text: e.text.clone(),
-        unit: e.unit.clone(),
-        value: with_error(e.value, error),
+        value: with_unit(&with_error(e.value, error), &e.unit),
         percent: percent(e.value, error).unwrap_or_default(),
         interval: match (e.at_bound, e.interval_95) {
             (Some(Bound::Lower), Some([_, high])) => format!("≤ {}", beside(high)),
@@ -90,7 +96,8 @@ fn parameter(e: &Estimate, truth: Option<f64>) -> ParameterRow {
 }
 
 /// The main parameters in one line: those that were scanned, then the first free ones.
-pub(crate) fn main_parameters(fit: &Fit) -> Vec<String> {
+pub(crate) fn main_parameters(case: &Case) -> Vec<String> {
+    let fit = &case.fit;
     let mut shown: Vec<&Estimate> =
         fit.profiles.iter().filter_map(|(name, _)| fit.estimates.iter().find(|e| e.name == *name)).collect();
     for e in fit.estimates.iter().filter(|e| e.role == "free") {
@@ -101,7 +108,10 @@ pub(crate) fn main_parameters(fit: &Fit) -> Vec<String> {
     shown.truncate(MAIN_PARAMETERS);
     shown
         .iter()
-        .map(|e| format!("{} = {}", e.symbol, with_unit(&with_error(e.value, e.standard_error), &e.unit)))
+        .map(|e| match is_one_of_several_orders(case, e) {
+            true => format!("{}: order open", e.symbol),
+            false => format!("{} = {}", e.symbol, with_unit(&with_error(e.value, e.standard_error), &e.unit)),
+        })
         .collect()
 }
 
@@ -113,7 +123,8 @@ pub(crate) struct Minima {
     pub(crate) further: Vec<MinimumRow>,
     /// How many parameters have no column.
     pub(crate) left_out: usize,
-    pub(crate) rms_label: &'static str,
+    pub(crate) cost_label: String,
+    pub(crate) rms_label: String,
     pub(crate) sentence: String,
 }
 
@@ -128,7 +139,8 @@ pub(crate) struct MinimumRow {
     pub(crate) stop: &'static str,
 }
 
-pub(crate) fn minima(fit: &Fit) -> Minima {
+pub(crate) fn minima(case: &Case) -> Minima {
+    let (fit, units) = (&case.fit, readings::units(case));
     let scanned = |e: &Estimate| fit.profiles.iter().any(|(name, _)| *name == e.name);
     let mut columns: Vec<usize> = (0..fit.estimates.len()).filter(|i| fit.estimates[*i].role == "free").collect();
     columns.sort_by_key(|i| !scanned(&fit.estimates[*i]));
@@ -138,7 +150,7 @@ pub(crate) fn minima(fit: &Fit) -> Minima {
         let e = &fit.estimates[*i];
         let is_unique = fit.estimates.iter().filter(|other| other.symbol == e.symbol).count() == 1;
         let name = if is_unique { &e.symbol } else { &e.name };
-        if e.unit.is_empty() { name.clone() } else { format!("{name} ({})", e.unit) }
+        labelled(name, &e.unit)
     };
     let row = |(index, m): (usize, &Minimum)| MinimumRow {
         number: index + 1,
@@ -162,24 +174,35 @@ pub(crate) fn minima(fit: &Fit) -> Minima {
         rows,
         further,
         left_out,
+        cost_label: match (fit.settings.loss, fit.goodness.sigma_source) {
+            (Loss::Squares, SigmaSource::Known) => "χ²".to_owned(),
+            (Loss::Squares, SigmaSource::Estimated) => labelled("Sum of squares", units.squared),
+            _ => "Cost".to_owned(),
+        },
         rms_label: match fit.goodness.sigma_source {
-            SigmaSource::Known => "rms (σ)",
-            SigmaSource::Estimated => "rms",
+            SigmaSource::Known => "rms (σ)".to_owned(),
+            SigmaSource::Estimated => labelled("rms", units.name),
         },
         sentence: rivals(fit),
     }
 }
 
 fn rivals(fit: &Fit) -> String {
-    let named = |(index, minimum): (usize, &Minimum)| format!("number {} ({})", index + 1, share(minimum.weight));
-    let rivals: Vec<String> = fit.rivals().map(named).collect();
+    let Some(best) = fit.minima.first() else { return "No minimum was found.".to_owned() };
+    let rivals: Vec<String> =
+        fit.rivals().map(|(index, m)| format!("number {} ({})", index + 1, share(m.weight))).collect();
+    let (bar, best) = (percent_of(RIVAL_SHARE), share(best.weight));
     match (fit.minima.len(), rivals.as_slice()) {
         (0, _) => "No minimum was found.".to_owned(),
         (1, _) => "The fit found one minimum.".to_owned(),
-        (n, []) => format!("Of {n} minima, none but the best has more than 5 % of its weight."),
-        (_, [one]) => format!("One rival has more than 5 % of the best minimum's weight: {one}."),
+        (n, []) => format!("Of {n} minima, none but the best has more than {bar} of its weight."),
+        (_, [one]) => format!("One rival has more than {bar} of the best fit's weight ({best}): {one}."),
         (_, many) => {
-            format!("{} rivals have more than 5 % of the best minimum's weight: {}.", many.len(), many.join(", "))
+            format!(
+                "{} rivals have more than {bar} of the best fit's weight ({best}): {}.",
+                many.len(),
+                many.join(", ")
+            )
         }
     }
 }
@@ -238,26 +261,27 @@ pub(crate) fn goodness(case: &Case) -> Vec<(&'static str, String)> {
     rows.push(("Effective readings", effective));
     rows.push(("Free parameters", g.free_parameters.to_string()));
     rows.push(("Degrees of freedom", crate::number::minus(&g.degrees_of_freedom.to_string())));
-    rows.push(("χ²", significant(g.chi_squared, 4)));
-    rows.push((
-        "Reduced χ²",
-        match (g.reduced_chi_squared, g.sigma_source) {
-            (Some(value), _) => significant(value, 3),
-            (None, SigmaSource::Estimated) => "has no meaning here: σ comes from the residuals themselves".to_owned(),
-            (None, SigmaSource::Known) => "not available: no degrees of freedom are left".to_owned(),
-        },
-    ));
-    rows.push((
-        "σ of a reading",
-        match g.sigma_source {
-            SigmaSource::Known => "known, from the table or the job".to_owned(),
-            SigmaSource::Estimated => format!(
-                "unknown; estimated from the residuals of this fit (scaled by {}), so that the errors hold only if the \
-                 model is right",
-                significant(g.sigma_scale, 3)
-            ),
-        },
-    ));
+    match g.sigma_source {
+        SigmaSource::Known => {
+            let none_left = || "not available: no degrees of freedom are left".to_owned();
+            rows.push(("χ²", significant(g.chi_squared, 4)));
+            rows.push(("Reduced χ²", g.reduced_chi_squared.map_or_else(none_left, |value| significant(value, 3))));
+            rows.push(("σ of a reading", "known, from the table or the job".to_owned()));
+        }
+        SigmaSource::Estimated => {
+            let units = readings::units(case);
+            rows.push(("Residual sum of squares", with_unit(&significant(g.chi_squared, 4), units.squared)));
+            rows.push((
+                "σ of a reading",
+                format!(
+                    "unknown; estimated from the residuals of this fit as σ = {}{}, so that the errors hold only if the \
+                     model is right",
+                    significant(g.sigma_scale, 3),
+                    units.following
+                ),
+            ));
+        }
+    }
     rows.push((
         "AICc on effective readings",
         g.aicc.map_or_else(|| "not available: too few effective readings".to_owned(), plain),
@@ -307,6 +331,11 @@ pub(crate) fn with_unit(number: &str, unit: &str) -> String {
         _ if number.contains(" ± ") && !number.starts_with('(') => format!("({number}) {unit}"),
         _ => format!("{number} {unit}"),
     }
+}
+
+/// A round share of 1 as whole percent.
+fn percent_of(share: f64) -> String {
+    format!("{} %", plain(100.0 * share))
 }
 
 fn signed(value: f64) -> String {

@@ -1,5 +1,6 @@
 //! Where an axis has its ticks, and what stands beside them.
 
+use super::chart::length;
 use crate::number::{minus, superscript};
 
 /// A tick's place and label.
@@ -9,22 +10,51 @@ pub(crate) struct Tick {
     pub(crate) label: String,
 }
 
-/// Ticks at multiples of 1, 2 or 5 times a power of ten inside the range: as many as fit, `most` (at least 3) at most.
+/// Ticks at multiples of 1, 2, 4 or 5 times a power of ten inside the range: as many as fit, about `most` (at least 3).
 pub(crate) fn linear(low: f64, high: f64, most: f64) -> Vec<Tick> {
+    at_multiples(low, high, most, 0.0)
+}
+
+/// The same for counts: whole numbers only.
+pub(crate) fn whole(low: f64, high: f64, most: f64) -> Vec<Tick> {
+    at_multiples(low, high, most, 1.0)
+}
+
+fn at_multiples(low: f64, high: f64, most: f64, smallest_step: f64) -> Vec<Tick> {
     let span = high - low;
     if !span.is_finite() || span <= 0.0 {
         return Vec::new();
     }
     // Rounding in the division must not lose a tick that lies on the very end.
     let slack = 1e-9 * span;
-    let first = |step: f64| ((low - slack) / step).ceil();
-    let last = |step: f64| ((high + slack) / step).floor();
+    let multiples = |step: f64| {
+        let (first, last) = (((low - slack) / step).ceil(), ((high + slack) / step).floor());
+        let ticks = std::iter::successors(Some(first), |m| Some(m + 1.0)).take_while(|m| *m <= last).map(|m| m * step);
+        (step, ticks.collect::<Vec<f64>>())
+    };
+    // Each step is at most twice the one before it: a range with one tick has three or four at the next finer step.
+    let power = 10f64.powf((span / most.max(3.0)).log10().floor() - 1.0);
+    let steps = (0..4).flat_map(|decade| [1.0, 2.0, 4.0, 5.0].map(|f| f * power * 10f64.powi(decade)));
+    let choices = steps.filter(|step| *step >= smallest_step * (1.0 - 1e-9)).map(multiples);
+    let (step, ticks) = comfortable(choices, most, |(_, ticks)| ticks.len()).unwrap_or((1.0, Vec::new()));
+    label(ticks, step, low.abs().max(high.abs()))
+}
+
+/// Of choices from the finest to the coarsest, the first with no more than `most` ticks (at least 3). Where that leaves
+/// fewer than three, the one before it, unless that is half as crowded again: an axis with one tick has no scale.
+fn comfortable<C>(choices: impl Iterator<Item = C>, most: f64, count: impl Fn(&C) -> usize) -> Option<C> {
     let most = most.floor().max(3.0);
-    let power = 10f64.powf((span / most).log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].map(|f| f * power).into_iter().find(|s| last(*s) - first(*s) < most);
-    let step = step.unwrap_or(20.0 * power);
-    let ticks = std::iter::successors(Some(first(step)), |m| Some(m + 1.0)).take_while(|m| *m <= last(step));
-    label(ticks.map(|m| m * step).collect(), step, low.abs().max(high.abs()))
+    let mut finer: Option<C> = None;
+    for choice in choices {
+        let ticks = count(&choice);
+        if length(ticks) > most {
+            finer = Some(choice);
+            continue;
+        }
+        let is_better = |finer: &C| ticks < 2 || length(count(finer)) <= 1.5 * most;
+        return Some(if ticks < 3 { finer.filter(is_better).unwrap_or(choice) } else { choice });
+    }
+    finer
 }
 
 /// Ticks of a logarithmic axis: powers of ten, with their doubles and fives where the range is short.
@@ -33,24 +63,21 @@ pub(crate) fn logarithmic(low: f64, high: f64, most: f64) -> Vec<Tick> {
         return Vec::new();
     }
     let (first, last) = (low.log10().floor(), high.log10().ceil());
-    let decades = high.log10() - low.log10();
-    if decades < 1.0 {
+    if high.log10() - low.log10() < 1.0 {
         return linear(low, high, most);
     }
-    let stride = (decades / most.max(1.0)).ceil().max(1.0);
-    let factors: &[f64] = if decades <= most / 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
-    let mut ticks = Vec::new();
-    let mut exponent = (first / stride).floor() * stride;
-    while exponent <= last {
-        for factor in factors {
-            let at = factor * 10f64.powf(exponent);
-            if at >= low * 0.999_999 && at <= high * 1.000_001 {
-                ticks.push(Tick { at, label: power_label(*factor, exponent) });
-            }
-        }
-        exponent += stride;
-    }
-    ticks
+    let powers = |stride: f64, factors: &[f64]| {
+        let start = (first / stride).floor() * stride;
+        let exponents = std::iter::successors(Some(start), |e| Some(e + stride)).take_while(|e| *e <= last);
+        exponents
+            .flat_map(|exponent| factors.iter().map(move |factor| (*factor, exponent)))
+            .map(|(factor, exponent)| Tick { at: factor * 10f64.powf(exponent), label: power_label(factor, exponent) })
+            .filter(|tick| tick.at >= low * 0.999_999 && tick.at <= high * 1.000_001)
+            .collect::<Vec<_>>()
+    };
+    let strides = std::iter::successors(Some(1.0), |s| Some(s + 1.0)).take_while(|s| *s <= last - first);
+    let choices = std::iter::once(powers(1.0, &[1.0, 2.0, 5.0])).chain(strides.map(|stride| powers(stride, &[1.0])));
+    comfortable(choices, most, Vec::len).unwrap_or_default()
 }
 
 fn power_label(factor: f64, exponent: f64) -> String {
@@ -105,5 +132,27 @@ mod tests {
         assert_eq!(labels(&logarithmic(0.5, 2e6, 8.0)), ["1", "10", "100", "1000", "10000", "10⁵", "10⁶"]);
         assert_eq!(labels(&logarithmic(0.9, 21.0, 6.0)), ["1", "2", "5", "10", "20"]);
         assert!(logarithmic(0.0, 1.0, 5.0).is_empty());
+    }
+
+    /// A strip of residuals 56 pixels high has room for three labels; ranges of ±44 once had the label 0 alone.
+    #[test]
+    fn no_axis_is_left_with_one_tick() {
+        assert_eq!(labels(&linear(-44.0, 44.0, 3.0)), ["−40", "0", "40"]);
+        for hundredth in 100..1000 {
+            let limit = f64::from(hundredth) / 100.0;
+            assert!(linear(-limit, limit, 3.0).len() >= 3, "±{limit}");
+            for low in [0.0, 0.37, 3.2, 33.21, 332.49] {
+                let ticks = linear(low, low + limit, 3.0);
+                assert!((2..=4).contains(&ticks.len()), "{low} to {}: {ticks:?}", low + limit);
+            }
+            assert!(logarithmic(0.31, 0.31 * 10.0 * limit, 3.0).len() >= 2, "0.31 to {}", 3.1 * limit);
+        }
+    }
+
+    #[test]
+    fn counts_have_whole_ticks() {
+        assert_eq!(labels(&whole(-0.06, 1.06, 14.0)), ["0", "1"]);
+        assert_eq!(labels(&whole(-0.2, 3.2, 14.0)), ["0", "1", "2", "3"]);
+        assert_eq!(labels(&whole(-2.0, 42.0, 6.0)), ["0", "10", "20", "30", "40"]);
     }
 }

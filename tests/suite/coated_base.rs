@@ -441,6 +441,12 @@ fn description_is_fit_for_a_methods_section() {
         "{}",
         description.text
     );
+    let text = r#"
+        layers = [{ name = "film", material = { name = "film", index = 1.7 }, thickness_nm = 330 }]
+        substrate = { name = "binder", index = 1.5 }
+    "#;
+    let film = CoatedBase::new(&toml::from_str::<Design>(text).unwrap(), &[500.0]).unwrap().describe();
+    assert!(film.text.contains("From the outside in: film (nominally 330 nm), on binder."), "{}", film.text);
     let melanin = &description.materials[1];
     assert_eq!(melanin.name, "bird_melanin");
     for part in ["1.648", "400 to 700 nm", "extrapolation", "Secondary"] {

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use approx::assert_relative_eq;
+use barbule::fit::SigmaSource;
 use barbule::job::{CaseData, Outcome};
 use barbule::measure::colour::Swatch;
 use barbule::report::{ReportError, write_report};
@@ -102,6 +103,81 @@ fn the_answer_comes_first() {
 }
 
 #[test]
+fn each_line_of_the_answer_is_a_paragraph() {
+    let outcome =
+        Outcome { answer: "Assuming one: 1 nm.\nAssuming two: 2 nm.".into(), name: "lines".into(), ..fixtures::film() };
+    let texts = markup::texts(page(&written("lines", &outcome)).split_once("<body>").unwrap().1);
+    assert_eq!(texts[1..3], ["Assuming one: 1 nm.", "Assuming two: 2 nm."]);
+}
+
+#[test]
+fn a_thickness_of_several_orders_is_not_given_as_one() {
+    let mut outcome = fixtures::film();
+    outcome.name = "orders".into();
+    outcome.cases = fixtures::peaks().cases;
+    for case in &mut outcome.cases {
+        case.fit = fixtures::film().cases.remove(0).fit;
+    }
+    let text = markup::texts(&page(&written("orders", &outcome))).join(" ");
+    assert!(text.contains("d: order open") && text.contains("One of several orders, see above."));
+    assert!(!text.contains("d = "), "a single thickness stands in the comparison");
+}
+
+#[test]
+fn sums_of_squares_and_errors_have_the_units_of_the_readings() {
+    let mut outcome = fixtures::peaks();
+    outcome.name = "unknown-sigma".into();
+    for case in &mut outcome.cases {
+        let goodness = &mut case.fit.goodness;
+        goodness.sigma_source = SigmaSource::Estimated;
+        (goodness.reduced_chi_squared, goodness.sigma_scale) = (None, 0.574);
+    }
+    let text = markup::texts(&page(&written("unknown-sigma", &outcome))).join(" ");
+    for words in ["Residual sum of squares 2.310 nm²", "Sum of squares (nm²)", "rms (nm)", "σ = 0.574 nm"] {
+        assert!(text.contains(words), "the page lacks {words:?}");
+    }
+    assert!(!text.contains("χ² 2.31"), "without a σ there is no χ²");
+}
+
+#[test]
+fn every_y_axis_has_at_least_two_labels() {
+    let minus = |text: &str| text.replace('−', "-");
+    for (_, folder) in all_reports() {
+        for name in ["spectra", "profile", "convergence"] {
+            let Ok(svg) = fs::read_to_string(folder.join(format!("plots/{name}.svg"))) else { continue };
+            // Labels right-aligned against their axis stand in one column; each axis's run rises from the bottom up.
+            let ends = markup::end_aligned(&svg);
+            let mut runs: Vec<usize> = Vec::new();
+            let mut last = f64::INFINITY;
+            for value in ends.iter().filter_map(|text| minus(text).parse::<f64>().ok()) {
+                if value > last {
+                    *runs.last_mut().unwrap() += 1;
+                } else {
+                    runs.push(1);
+                }
+                last = value;
+            }
+            assert!(!runs.is_empty() && runs.iter().all(|labels| *labels >= 2), "{name}: {ends:?}");
+        }
+    }
+}
+
+#[test]
+fn a_spike_does_not_turn_a_map_into_one_colour() {
+    let mut outcome = fixtures::paint();
+    outcome.name = "spike".into();
+    let CaseData::Spectra { spectra, .. } = &mut outcome.cases[0].data else { panic!("expected spectra") };
+    spectra[0].measured[3] = 4000.0;
+    spectra[1].fitted = false;
+    let folder = written("spike", &outcome);
+    let labels = markup::texts(&fs::read_to_string(folder.join("plots/maps.svg")).unwrap());
+    assert!(labels.iter().any(|text| text.starts_with("above ") && text.ends_with(": clipped")), "{labels:?}");
+    assert!(!labels.iter().any(|text| text == "4000"), "the colour bar reaches up to the spike");
+    let text = markup::texts(&page(&folder)).join(" ");
+    assert!(text.contains("One spectrum that was not fitted is left out."));
+}
+
+#[test]
 fn markup_in_names_is_shown_and_not_obeyed() {
     let (_, folder) = report("awkward");
     let page = page(folder);
@@ -182,8 +258,8 @@ fn tables_hold_the_plotted_peaks_minima_and_correlations() {
 
     let (_, folder) = report("film");
     let profile = table(&folder.join("curves/profile.csv"));
-    assert_eq!(profile.iter().filter(|r| r["curve"] == "other minima").count(), 5);
-    assert_eq!(profile.iter().filter(|r| r["curve"] == "lowest cost found").count(), 260);
+    assert_eq!(profile.iter().filter(|r| r["curve"] == "other minima of the fit").count(), 5);
+    assert_eq!(profile.iter().filter(|r| r["curve"] == "scan before the fit").count(), 260);
     let correlations = table(&folder.join("curves/correlations.csv"));
     assert_eq!(correlations.len(), 25);
     assert_relative_eq!(number(&correlations[1], "correlation"), -0.962);

@@ -105,7 +105,10 @@ fn entry_text(entry: &DesignEntry) -> String {
 }
 
 fn layer_text(layer: &DesignLayer) -> String {
-    format!("{} of {} (nominally {} nm)", layer.name, material_name(&layer.material), layer.thickness_nm)
+    let material = material_name(&layer.material);
+    // A layer that is called after its material is named once.
+    let of_material = if layer.name == material { String::new() } else { format!(" of {material}") };
+    format!("{}{of_material} (nominally {} nm)", layer.name, layer.thickness_nm)
 }
 
 fn material_name(choice: &MaterialChoice) -> &str {

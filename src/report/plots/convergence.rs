@@ -29,8 +29,8 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         cells: vec![Cell {
             title: String::new(),
             charts: vec![Chart {
-                x: Axis::linear("iteration", with_room(extent(trace.iter().map(|t| iteration(t.iteration))))),
-                y: Axis::logarithmic(cost_label(&case.fit), with_room_logarithmic(costs)),
+                x: Axis::counts("iteration", with_room(extent(trace.iter().map(|t| iteration(t.iteration))))),
+                y: Axis::logarithmic(cost_label(case), with_room_logarithmic(costs)),
                 height: 170.0,
                 layers: vec![Layer::Series(Series::new(
                     "cost",

@@ -44,6 +44,7 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
                     rows,
                     scale: Scale::Diverging { limit: 1.0 },
                     label: "correlation".to_owned(),
+                    clipped: String::new(),
                     with_numbers: shown.len() <= MOST_WITH_NUMBERS,
                 })],
             }],

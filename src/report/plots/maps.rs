@@ -1,16 +1,23 @@
 //! Angle × wavelength maps: measured, fitted, and their difference.
 
 use crate::job::{Case, CaseData, SpectrumFit};
+use crate::number::significant;
 use crate::report::angles;
-use crate::report::chart::{Axis, Cell, Chart, Figure, Layer, Map, PAGE_WIDTH, around_zero, extent, length};
+use crate::report::chart::{Axis, Cell, Chart, Figure, Layer, Map, PAGE_WIDTH, extent, length};
 use crate::report::palette::Scale;
 use crate::report::readings::{self, Reading, quantity_label};
 
 /// Columns of a map; more cannot be told apart at its width.
 const MOST_COLUMNS: usize = 100;
+/// The share of all values that a colour scale reaches over: one spike must not turn all the rest into one colour.
+const MOST_OF_ALL: f64 = 0.98;
 
 pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let CaseData::Spectra { quantity, spectra } = &case.data else { return Vec::new() };
+    // What the fit did not see is often what would outshine all the rest: gloss, grazing angles.
+    let fitted_spectra: Vec<SpectrumFit> = spectra.iter().filter(|s| s.fitted).cloned().collect();
+    let left_out = spectra.len() - fitted_spectra.len();
+    let spectra = &fitted_spectra;
     if spectra.len() < 2 {
         return Vec::new();
     }
@@ -27,13 +34,17 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     };
     let (measured, fitted) = (rows(|r| r.measured), rows(|r| r.model));
     let residual = rows(Reading::residual);
-    let (low, high) = extent(measured.iter().chain(&fitted).flatten().flatten().copied());
-    let readings_scale = Scale::Sequential { low: low.min(0.0), high };
-    let residual_scale = Scale::Diverging { limit: around_zero(residual.iter().flatten().flatten().copied()).1 };
+    let readings = || measured.iter().chain(&fitted).flatten().flatten().copied();
+    let residuals = || residual.iter().flatten().flatten().copied();
+    let readings_scale = Scale::Sequential {
+        low: at_share(readings(), 1.0 - MOST_OF_ALL).min(0.0),
+        high: at_share(readings(), MOST_OF_ALL),
+    };
+    let residual_scale = Scale::Diverging { limit: at_share(residuals().map(f64::abs), MOST_OF_ALL) };
     let height = (length(names.len()) * 15.0).clamp(120.0, 360.0);
     let is_mirror = spectra.iter().all(|s| angles::is_mirror(&s.geometry));
     let y_label = if is_mirror { "inclination θ" } else { "θᵢ → θₒ, φ" };
-    let cell = |title: &str, rows: Vec<Vec<Option<f64>>>, scale: Scale, label: &str| Cell {
+    let cell = |title: &str, rows: Vec<Vec<Option<f64>>>, scale: Scale, label: &str, clipped: &str| Cell {
         title: title.to_owned(),
         charts: vec![Chart {
             x: Axis::linear("wavelength (nm)", wavelengths),
@@ -44,28 +55,62 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
                 rows,
                 scale,
                 label: label.to_owned(),
+                clipped: clipped.to_owned(),
                 with_numbers: false,
             })],
         }],
     };
     let label = quantity_label(*quantity);
+    let readings_clipped = clipped(readings_scale, extent(readings()));
+    let residuals_clipped = clipped(residual_scale, extent(residuals()));
+    let not_fitted = match left_out {
+        0 => String::new(),
+        1 => "One spectrum that was not fitted is left out.".to_owned(),
+        many => format!("{many} spectra that were not fitted are left out."),
+    };
     let caption = [
+        not_fitted,
         selection.text.unwrap_or_default(),
-        "Measured and fitted share one scale; residual is model − measured. Hatched: no reading.".to_owned(),
-    ]
-    .join(" ");
+        "Measured and fitted share one scale; residual is model − measured. Scales reach over 98 % of the values; what is \
+         beyond has the colour of the end. Hatched: no reading."
+            .to_owned(),
+    ];
+    let caption = caption.iter().filter(|s| !s.is_empty()).cloned().collect::<Vec<_>>().join(" ");
     vec![Figure {
         name: "maps".to_owned(),
         title: "Angle × wavelength".to_owned(),
-        caption: caption.trim().to_owned(),
+        caption,
         width: PAGE_WIDTH,
         columns: 3,
         cells: vec![
-            cell("measured", measured, readings_scale, label),
-            cell("fitted", fitted, readings_scale, label),
-            cell("residual", residual, residual_scale, "model − measured"),
+            cell("measured", measured, readings_scale, label, &readings_clipped),
+            cell("fitted", fitted, readings_scale, label, &readings_clipped),
+            cell("residual", residual, residual_scale, "model − measured", &residuals_clipped),
         ],
     }]
+}
+
+/// The value below which this share of the values lies; 1 where there is none above 0, so that a scale has an extent.
+fn at_share(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a place in the list")]
+    let place = (share * length(sorted.len().saturating_sub(1))).round() as usize;
+    sorted.get(place).copied().filter(|v| *v != 0.0).unwrap_or(1.0)
+}
+
+/// Which values lie beyond the ends of a scale.
+fn clipped(scale: Scale, (lowest, highest): (f64, f64)) -> String {
+    let (low, high) = scale.range();
+    // The ends are written short; what is beyond by less is not beyond to the eye.
+    let slack = 1e-3 * (high - low);
+    let [below, above] = [low, high].map(|end| significant(end, 2));
+    match (lowest < low - slack, highest > high + slack) {
+        (false, false) => String::new(),
+        (true, true) => format!("below {below}, above {above}: clipped"),
+        (true, false) => format!("below {below}: clipped"),
+        (false, true) => format!("above {above}: clipped"),
+    }
 }
 
 /// The mean of a spectrum's readings in each column, and the nearest one where a column falls between two readings.

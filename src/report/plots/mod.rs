@@ -10,7 +10,8 @@ mod spectra;
 mod support;
 
 use super::chart::Figure;
-use crate::fit::{Fit, Loss, SigmaSource};
+use super::readings;
+use crate::fit::{Loss, SigmaSource};
 use crate::job::Case;
 
 /// The part of the page where a figure stands.
@@ -46,11 +47,11 @@ pub(crate) const ALL: &[Plot] = &[
     Plot { place: Place::Convergence, draw: convergence::draw },
 ];
 
-/// What the cost is, as an axis says it. It has no unit.
-fn cost_label(fit: &Fit) -> &'static str {
-    match (fit.settings.loss, fit.goodness.sigma_source) {
-        (Loss::Squares, SigmaSource::Known) => "cost (χ²)",
-        (Loss::Squares, SigmaSource::Estimated) => "cost (weighted squares)",
-        _ => "cost (robust)",
+/// What the cost is, as an axis says it.
+fn cost_label(case: &Case) -> String {
+    match (case.fit.settings.loss, case.fit.goodness.sigma_source) {
+        (Loss::Squares, SigmaSource::Known) => "cost (χ²)".to_owned(),
+        (Loss::Squares, SigmaSource::Estimated) => readings::labelled("sum of squares", readings::units(case).squared),
+        _ => "cost (robust)".to_owned(),
     }
 }

@@ -3,7 +3,9 @@
 use crate::job::{Case, CaseData, Prediction};
 use crate::report::angles;
 use crate::report::chart::{Axis, Cell, Chart, Figure, Layer, Look, PAGE_WIDTH, Series, extent, from_zero};
-use crate::report::palette::BLACK;
+use crate::report::palette::{BLACK, BLUE};
+
+const MEASURED_PEAK: Look = Look::Line { colour: BLUE, width: 1.3, dashed: true };
 
 pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let CaseData::Peaks { peaks, spectra, .. } = &case.data else { return Vec::new() };
@@ -17,7 +19,11 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         let curve = spectrum.wavelengths_nm.iter().copied().zip(spectrum.reflectance.iter().copied());
         let look = Look::Line { colour: BLACK, width: 1.3, dashed: false };
         let mut layers = vec![Layer::Series(Series::new("predicted", curve, look))];
-        layers.extend(peaks.iter().filter(|p| p.id == spectrum.id).map(|p| Layer::Upright(p.measured_nm)));
+        let marked = peaks.iter().filter(|p| p.id == spectrum.id);
+        layers.extend(marked.map(|p| {
+            let upright = [(p.measured_nm, reflectances.0), (p.measured_nm, reflectances.1)];
+            Layer::Series(Series::new("measured peak", upright, MEASURED_PEAK))
+        }));
         Cell {
             title: title.clone(),
             charts: vec![Chart {
@@ -32,7 +38,7 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         name: "predicted".to_owned(),
         title: "Predicted spectra".to_owned(),
         caption: format!(
-            "Reflectance of the fitted model at each angle; dashed: the measured peak. {}",
+            "Reflectance of the fitted model at each angle. {}",
             angles::meaning(spectra.iter().map(|s| &s.geometry))
         ),
         width: PAGE_WIDTH,

@@ -5,10 +5,10 @@ use crate::report::angles;
 use crate::report::chart::{
     Axis, Cell, Chart, Figure, Layer, Look, PAGE_WIDTH, Series, around_zero, extent, from_zero,
 };
-use crate::report::palette::{BLACK, BLUE, SKY, VERMILION};
+use crate::report::palette::{BLACK, GREEN, SKY, VERMILION};
 use crate::report::readings::{self, quantity_label, quantity_note};
 
-const MEASURED: Look = Look::Line { colour: SKY, width: 3.2, dashed: false };
+const MEASURED: Look = Look::Line { colour: SKY, width: 2.6, dashed: false };
 const FITTED: Look = Look::Line { colour: BLACK, width: 1.3, dashed: false };
 const PREDICTED: Look = Look::Line { colour: VERMILION, width: 1.5, dashed: true };
 
@@ -21,7 +21,6 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let shown: Vec<&SpectrumFit> = selection.indices.iter().map(|i| &spectra[*i]).collect();
     let names = angles::names(spectra.iter().map(|s| &s.geometry));
     let wavelengths = extent(shown.iter().flat_map(|s| s.wavelengths_nm.iter().copied()));
-    let residuals = around_zero(shown.iter().flat_map(|s| readings::of(s)).map(|r| r.residual()));
     let is_few = shown.len() <= 4;
     let cells = selection.indices.iter().map(|index| {
         let spectrum = &spectra[*index];
@@ -49,14 +48,14 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         };
         let residual_chart = Chart {
             x: x(),
-            y: Axis::linear("residual", residuals),
+            y: Axis::linear("residual", around_zero(readings::of(spectrum).map(|r| r.residual()))),
             height: if is_few { 80.0 } else { 56.0 },
             layers: vec![
                 Layer::Level(0.0),
                 Layer::Series(Series::new(
                     "residual",
                     readings::of(spectrum).map(|r| (r.wavelength_nm, r.residual())),
-                    Look::Line { colour: BLUE, width: 1.1, dashed: false },
+                    Look::Line { colour: GREEN, width: 1.1, dashed: false },
                 )),
             ],
         };
@@ -66,7 +65,8 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
         selection.text.unwrap_or_default(),
         angles::meaning(spectra.iter().map(|s| &s.geometry)).to_owned(),
         quantity_note(*quantity).to_owned(),
-        "Each panel has its own scale of readings. Residuals are model − measured, in the same unit, all on one scale."
+        "Residuals are model − measured, in the same unit. Each panel has its own scale of readings and its own of \
+         residuals."
             .to_owned(),
     ];
     let caption = sentences.iter().filter(|s| !s.is_empty()).cloned().collect::<Vec<_>>().join(" ");

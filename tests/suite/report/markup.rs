@@ -99,6 +99,16 @@ fn resolved(text: &str) -> String {
     .fold(text.to_owned(), |text, (entity, character)| text.replace(entity, character))
 }
 
+/// Texts that end at their point, as the numbers beside a y axis do, in the order of the file.
+pub(super) fn end_aligned(svg: &str) -> Vec<String> {
+    let all = pieces(svg);
+    let labels = all.windows(2).filter_map(|pair| match pair {
+        [Piece::Tag(tag), Piece::Text(text)] if tag.contains("text-anchor=\"end\"") => Some(resolved(text.trim())),
+        _ => None,
+    });
+    labels.collect()
+}
+
 /// A label's box in the units of its SVG.
 struct Label {
     text: String,
