@@ -3,6 +3,7 @@
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 use anyhow::{Context, Result};
 use barbule::fit::{Checkpoints, Control, StopReason};
@@ -78,6 +79,7 @@ impl Fit {
             bar.set_position(done as u64);
         };
         let checkpoints = self.checkpoint.map(Checkpoints::new);
+        let started = Instant::now();
         let control = Control { interrupt: &INTERRUPTED, progress: &progress, checkpoint: checkpoints.as_ref() };
         let outcome = job::run(&job, &control)?;
         bar.finish_and_clear();
@@ -85,6 +87,7 @@ impl Fit {
         let page = report::write_report(&outcome, &folder)?;
         let result = outcome.to_json().context("the result cannot be written as JSON")?;
         report::write_file(&folder.join("result.json"), result.as_bytes())?;
+        report::write_file(&folder.join("timing.json"), timing(started).as_bytes())?;
         if let Some(checkpoints) = checkpoints.filter(|_| !INTERRUPTED.load(Ordering::Relaxed)) {
             checkpoints.remove()?;
         }
@@ -97,6 +100,12 @@ impl Fit {
         }
         Ok(ending(&outcome))
     }
+}
+
+/// What the fit took, apart from the result, which must not hang on it.
+fn timing(started: Instant) -> String {
+    let (seconds, threads) = (started.elapsed().as_secs_f64(), rayon::current_num_threads());
+    format!("{{\n  \"seconds\": {seconds:.3},\n  \"threads\": {threads}\n}}\n")
 }
 
 fn ending(outcome: &Outcome) -> Ending {

@@ -187,6 +187,11 @@ impl<'a> Objective<'a> {
     }
 }
 
+/// Order of two points of one length, value by value.
+fn by_value(a: &[f64], b: &[f64]) -> std::cmp::Ordering {
+    a.iter().zip(b).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne()).unwrap_or(std::cmp::Ordering::Equal)
+}
+
 /// The best point that a solver has seen, kept outside of it.
 #[derive(Debug, Default)]
 pub(super) struct BestSoFar(Mutex<Option<Point>>);
@@ -196,11 +201,9 @@ impl BestSoFar {
     /// several threads does not matter.
     pub(super) fn offer(&self, free: &[f64], cost: f64) {
         let mut best = self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let better = best.as_ref().is_none_or(|best| {
-            cost.total_cmp(&best.cost)
-                .then_with(|| free.partial_cmp(&best.free).unwrap_or(std::cmp::Ordering::Equal))
-                .is_lt()
-        });
+        let better = best
+            .as_ref()
+            .is_none_or(|best| cost.total_cmp(&best.cost).then_with(|| by_value(free, &best.free)).is_lt());
         if better {
             *best = Some(Point { free: free.to_vec(), cost });
         }

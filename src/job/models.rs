@@ -133,7 +133,7 @@ const IRIDESCENT_PLASTIC: ModelCard = ModelCard {
     kind: "iridescent-plastic",
     text: "A rough plastic with a phase term between its specular and its diffuse part in each channel. As published it \
            may send out more than it receives.",
-    usage: "Reads spectra at any four angles. For energy conservation use `coated-base`.",
+    usage: "Reads spectra at any four angles. `coated-base` over a black base never sends out more than it receives.",
     example: "kind = \"iridescent-plastic\"",
     works: &[WALTER],
 };
