@@ -14,6 +14,7 @@ mod angles;
 mod chart;
 mod curves;
 mod files;
+mod frame;
 mod layout;
 mod methods;
 mod page;

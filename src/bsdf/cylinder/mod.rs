@@ -27,23 +27,20 @@ mod azimuthal;
 mod far_field;
 mod filmed;
 mod longitudinal;
+mod model;
 mod near_field;
 mod quadrature;
 mod surface;
 mod tabulated;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::channel_parameters::{ChannelParameter, Declarations};
-use super::{Bsdf, Direction, Model, ModelError};
-use crate::parameter::{Parameter, Spread};
+use super::{Bsdf, Direction};
 use crate::pigment::{InversionError, solve_decreasing};
 
 pub use attenuation::Attenuation;
 pub use azimuthal::AzimuthalLobe;
 pub use filmed::{FilmedCylinderDesign, FilmedCylinderModel};
 pub use longitudinal::LongitudinalMapping;
+pub use model::{CylinderDesign, CylinderModel};
 pub use tabulated::TabulatedCylinder;
 
 use azimuthal::{NarrowLogistic, TrimmedLogistic, WrappedGaussian};
@@ -389,117 +386,5 @@ pub(super) fn over_cosine(incoming: &Direction, values: &mut [f64]) {
     let factor = if cosine > 0.0 { 1.0 / cosine } else { 0.0 };
     for value in values {
         *value *= factor;
-    }
-}
-
-/// A fibre as typed in a job.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(default, deny_unknown_fields)]
-pub struct CylinderDesign {
-    /// How `beta_m` becomes the width of the lobes.
-    pub mapping: LongitudinalMapping,
-    /// Shape of the lobes around the fibre, and how `beta_n` becomes their width.
-    pub lobe: AzimuthalLobe,
-    /// Parameters that have one value in each channel: `eta`, `sigma_a`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub per_channel: Vec<String>,
-}
-
-/// The cylinder as a model to be fitted: which parameters it has is fixed, their values are not.
-#[derive(Debug, Clone)]
-pub struct CylinderModel {
-    channel_count: usize,
-    mapping: LongitudinalMapping,
-    lobe: AzimuthalLobe,
-    eta: ChannelParameter,
-    beta_m: usize,
-    beta_n: usize,
-    sigma_a: ChannelParameter,
-    parameters: Vec<Parameter>,
-}
-
-impl CylinderModel {
-    /// The model at these wavelengths (nm, one a channel).
-    ///
-    /// # Errors
-    /// No wavelengths, senseless ones, or a wrong name in `per_channel`.
-    pub fn new(design: &CylinderDesign, wavelengths_nm: &[f64]) -> Result<Self, ModelError> {
-        let mut declarations = Declarations::new(wavelengths_nm, &design.per_channel)?;
-        let parameter = |name: &str, symbol: &str, unit, [default, lower, upper]: [f64; 3], text: &str| Parameter {
-            name: name.to_owned(),
-            symbol: symbol.to_owned(),
-            unit,
-            default,
-            lower,
-            upper,
-            spread: Spread::Linear,
-            scan_step: None,
-            text: text.to_owned(),
-        };
-        let eta = declarations.spectral(parameter(
-            "eta",
-            "η",
-            "",
-            [1.55, 1.05, 3.0],
-            "refractive index of the fibre relative to what surrounds it",
-        ));
-        let beta_m = declarations.number(parameter(
-            "beta_m",
-            "β_m",
-            "",
-            [0.3, 0.02, 1.0],
-            "roughness along the fibre: how far lobes spread along it",
-        ));
-        let beta_n = declarations.number(parameter(
-            "beta_n",
-            "β_n",
-            "",
-            [0.3, 0.02, 1.0],
-            "roughness around the fibre: how far lobes spread around it",
-        ));
-        let sigma_a = declarations.spectral(parameter(
-            "sigma_a",
-            "σ_a",
-            "1/radius",
-            [0.2, 0.0, 20.0],
-            "absorption inside the fibre, per radius of it",
-        ));
-        Ok(Self {
-            channel_count: wavelengths_nm.len(),
-            mapping: design.mapping,
-            lobe: design.lobe,
-            eta,
-            beta_m,
-            beta_n,
-            sigma_a,
-            parameters: declarations.finish()?,
-        })
-    }
-
-    /// The fibre with these parameter values.
-    pub(super) fn cylinder(&self, values: &[f64]) -> Cylinder {
-        let channels = 0..self.channel_count;
-        Cylinder::from_checked(&CylinderParameters {
-            eta: channels.clone().map(|channel| self.eta.value(values, channel)).collect(),
-            sigma_a: channels.map(|channel| self.sigma_a.value(values, channel)).collect(),
-            beta_m: values[self.beta_m],
-            beta_n: values[self.beta_n],
-            mapping: self.mapping,
-            lobe: self.lobe,
-        })
-    }
-}
-
-impl Model for CylinderModel {
-    fn parameters(&self) -> &[Parameter] {
-        &self.parameters
-    }
-
-    fn channel_count(&self) -> usize {
-        self.channel_count
-    }
-
-    fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
-        Box::new(self.cylinder(values))
     }
 }
