@@ -26,7 +26,8 @@ use self::base::Base;
 use self::design::check_name;
 use self::variable_material::{Channels, VariableMaterial};
 use super::beckmann_lobe::{HalfVector, lobe};
-use super::{Bsdf, Direction, Model, ModelError};
+use super::sampling::{cosine_density, cosine_lobe};
+use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::optics::microfacet::Beckmann;
 use crate::optics::{Arrangement, LayeredMedium, fresnel};
 use crate::parameter::{Parameter, Spread};
@@ -173,6 +174,17 @@ impl Bsdf for BoundCoatedBase<'_> {
                 self.evaluate_layers(index, &refract(incoming, index), &refract(outgoing, index), through, values);
             }
         }
+    }
+
+    fn sample(&self, outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
+        (outgoing.z > 0.0).then(|| {
+            let incoming = cosine_lobe([first, second]);
+            Sample::scattered(incoming, cosine_density(&incoming))
+        })
+    }
+
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        if outgoing.z > 0.0 { cosine_density(incoming) } else { 0.0 }
     }
 }
 

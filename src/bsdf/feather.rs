@@ -43,8 +43,9 @@ use serde::{Deserialize, Serialize};
 use self::species::barb_share;
 use super::cylinder::{CylinderDesign, CylinderModel, FilmedCylinderDesign, FilmedCylinderModel};
 use super::oriented::Tangent;
+use super::sampling::Choice;
 use super::spongy_barb::SpongyBarbModel;
-use super::{Bsdf, CoatedBase, Design, Direction, Model, ModelError};
+use super::{Bsdf, CoatedBase, Design, Direction, Model, ModelError, Sample};
 use crate::parameter::{Parameter, Spread};
 
 /// Mean width and spacing of barbs, µm (the first thesis, section 3.1, which calls the width a radius; Pap et al. 2015).
@@ -298,5 +299,46 @@ impl Bsdf for BoundFeather<'_> {
 
     fn straight_through(&self, incoming: &Direction) -> f64 {
         self.shares(incoming, &-incoming).through
+    }
+
+    /// Chooses a part by its share, and the part draws.
+    fn sample(&self, outgoing: &Direction, [first, second, choice]: [f64; 3]) -> Option<Sample> {
+        let shares = self.shares(&-outgoing, outgoing);
+        let mut choice = Choice(choice);
+        if choice.takes(shares.through) {
+            return Some(Sample { incoming: -outgoing, density: 0.0, straight_through: true });
+        }
+        let remaining = 1.0 - shares.through;
+        let incoming = if choice.takes(shares.barb / remaining) {
+            self.barb.sample(outgoing, [first, second, choice.0])?.incoming
+        } else {
+            match &self.directions {
+                Some(Barbules { proximal, distal }) => {
+                    let tangent = if choice.takes(shares.proximal / (shares.proximal + shares.distal)) {
+                        proximal
+                    } else {
+                        distal
+                    };
+                    let drawn = self.barbule.sample(&tangent.to_frame(outgoing), [first, second, choice.0])?;
+                    tangent.out_of_frame(&drawn.incoming)
+                }
+                None => self.barbule.sample(outgoing, [first, second, choice.0])?.incoming,
+            }
+        };
+        Some(Sample::scattered(incoming, self.density(&incoming, outgoing)))
+    }
+
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        let shares = self.shares(&-outgoing, outgoing);
+        let barbules = match &self.directions {
+            Some(Barbules { proximal, distal }) => {
+                let of_side = |share: f64, tangent: &Tangent| {
+                    share * self.barbule.density(&tangent.to_frame(incoming), &tangent.to_frame(outgoing))
+                };
+                of_side(shares.proximal, proximal) + of_side(shares.distal, distal)
+            }
+            None => (shares.proximal + shares.distal) * self.barbule.density(incoming, outgoing),
+        };
+        shares.barb * self.barb.density(incoming, outgoing) + barbules
     }
 }

@@ -51,7 +51,8 @@ use super::channel_parameters::{ChannelParameter, Declarations};
 use super::interference::Interference;
 use super::iridescent_plastic::thickness_nm;
 use super::rough_plastic;
-use super::{Bsdf, Direction, Model, ModelError};
+use super::sampling::{cosine_density, cosine_lobe};
+use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::parameter::{Parameter, Spread};
 
 /// Where a normal of the film comes from.
@@ -350,6 +351,17 @@ impl Bsdf for BoundGranierHeidrich {
             let film = reflected + transmitted + 2.0 * phase * (reflected * transmitted).sqrt();
             *value = channel.specular * film + channel.diffuse;
         }
+    }
+
+    fn sample(&self, outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
+        (outgoing.z > 0.0).then(|| {
+            let incoming = cosine_lobe([first, second]);
+            Sample::scattered(incoming, cosine_density(&incoming))
+        })
+    }
+
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        if outgoing.z > 0.0 { cosine_density(incoming) } else { 0.0 }
     }
 }
 

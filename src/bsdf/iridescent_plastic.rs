@@ -41,7 +41,8 @@ use super::beckmann_lobe::{HalfVector, lobe};
 use super::channel_parameters::{ChannelParameter, Declarations};
 use super::interference::Interference;
 use super::rough_plastic::{self, InternalReflection};
-use super::{Bsdf, Direction, Model, ModelError};
+use super::sampling::{cosine_density, cosine_lobe};
+use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::optics::elementary::sin_cos;
 use crate::optics::microfacet::Beckmann;
 use crate::optics::{RoughTransmittance, TransmittanceCurves, fresnel};
@@ -177,6 +178,17 @@ impl Bsdf for BoundIridescentPlastic {
             cos_facet: half.cos_facet,
             values,
         });
+    }
+
+    fn sample(&self, outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
+        (outgoing.z > 0.0).then(|| {
+            let incoming = cosine_lobe([first, second]);
+            Sample::scattered(incoming, cosine_density(&incoming))
+        })
+    }
+
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        if outgoing.z > 0.0 { cosine_density(incoming) } else { 0.0 }
     }
 }
 

@@ -12,7 +12,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::channel_parameters::{ChannelParameter, Declarations};
-use super::{Bsdf, Direction, Model, ModelError};
+use super::sampling::{cosine_density, cosine_lobe};
+use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::parameter::{Parameter, Spread};
 
 /// A Lambertian surface as typed in a job.
@@ -85,5 +86,16 @@ impl Bsdf for BoundLambertian {
         } else {
             values.fill(0.0);
         }
+    }
+
+    fn sample(&self, outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
+        (outgoing.z > 0.0).then(|| {
+            let incoming = cosine_lobe([first, second]);
+            Sample::scattered(incoming, cosine_density(&incoming))
+        })
+    }
+
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        if outgoing.z > 0.0 { cosine_density(incoming) } else { 0.0 }
     }
 }

@@ -19,11 +19,14 @@
 //! standard deviation of the slopes; GGX's slopes have no standard deviation. Left out: what a second microfacet would
 //! catch, absorption, polarisation.
 
+use std::f64::consts::FRAC_1_PI;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::channel_parameters::{ChannelParameter, Declarations};
-use super::{Bsdf, Direction, Model, ModelError};
+use super::sampling::anywhere;
+use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::optics::fresnel;
 use crate::optics::microfacet::{Beckmann, Ggx};
 use crate::parameter::{Parameter, Spread};
@@ -164,6 +167,14 @@ impl Bsdf for BoundInterface {
         } else {
             self.transmit(incoming, outgoing, visible / -cosines, values);
         }
+    }
+
+    fn sample(&self, _outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
+        Some(Sample::scattered(anywhere([first, second]), 0.25 * FRAC_1_PI))
+    }
+
+    fn density(&self, _incoming: &Direction, _outgoing: &Direction) -> f64 {
+        0.25 * FRAC_1_PI
     }
 }
 

@@ -18,6 +18,7 @@ mod microfacet;
 mod model_error;
 mod oriented;
 mod rough_plastic;
+mod sampling;
 pub mod spongy_barb;
 
 pub use coated_base::{
@@ -32,6 +33,7 @@ pub use microfacet::{Distribution, MicrofacetDesign, MicrofacetInterface};
 pub use model_error::ModelError;
 pub use oriented::Oriented;
 pub use rough_plastic::{InternalReflection, RoughPlastic, RoughPlasticDesign};
+pub use sampling::Sample;
 
 use nalgebra::Vector3;
 
@@ -76,7 +78,7 @@ pub trait Model: Send + Sync + std::fmt::Debug {
     }
 }
 
-/// A scattering function, ready to be evaluated.
+/// A scattering function, ready to be evaluated, and to be drawn from by a renderer whose paths start at the viewer.
 pub trait Bsdf: Send + Sync {
     /// Writes the scattering function in 1/sr, without the cosine, one value a channel, for light from `incoming`
     /// seen from `outgoing`. Directions below the surface (z < 0) are legal; a model that only reflects gives 0 there.
@@ -87,6 +89,16 @@ pub trait Bsdf: Send + Sync {
     fn straight_through(&self, _incoming: &Direction) -> f64 {
         0.0
     }
+
+    /// Draws where light comes from, for a viewer, from three uniform numbers in [0, 1), so that f · |n·ωi| over the density
+    /// varies little. Allocates nothing.
+    ///
+    /// None: the draw is rejected, because its direction lies where no light comes from; it counts as no light.
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample>;
+
+    /// The density with which [`Bsdf::sample`] draws `incoming`, 1/sr. Its integral over the sphere, the share of rejected
+    /// draws and that of straight-through ones sum to 1. Above 0 wherever [`Bsdf::evaluate`] is. Allocates nothing.
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64;
 
     /// [`Bsdf::evaluate`] for many pairs of directions at a time: all channels of the first pair, then of the second.
     ///

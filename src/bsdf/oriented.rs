@@ -10,7 +10,7 @@
 //! f(ωi, ωo) = `f_model(R ωi, R ωo)`, R the rotation by −ψ about the normal, which takes the tangent to x. Turned by 180° a
 //! fibre looks the same, so a fit should bound ψ to half a turn; elsewhere it finds each minimum twice.
 
-use super::{Bsdf, Direction, Model};
+use super::{Bsdf, Direction, Model, Sample};
 use crate::parameter::{Parameter, Spread};
 
 /// A model whose tangent lies at an azimuth of its own: `tangent_deg`.
@@ -70,6 +70,15 @@ impl Bsdf for BoundOriented<'_> {
     fn straight_through(&self, incoming: &Direction) -> f64 {
         self.bsdf.straight_through(&self.tangent.to_frame(incoming))
     }
+
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        let sample = self.bsdf.sample(&self.tangent.to_frame(outgoing), random)?;
+        Some(Sample { incoming: self.tangent.out_of_frame(&sample.incoming), ..sample })
+    }
+
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        self.bsdf.density(&self.tangent.to_frame(incoming), &self.tangent.to_frame(outgoing))
+    }
 }
 
 /// A tangent in the surface, by its azimuth.
@@ -93,5 +102,10 @@ impl Tangent {
             self.cos_azimuth * direction.y - self.sin_azimuth * direction.x,
             direction.z,
         )
+    }
+
+    /// The direction that [`Tangent::to_frame`] takes to this one.
+    pub(super) fn out_of_frame(self, direction: &Direction) -> Direction {
+        Self { sin_azimuth: -self.sin_azimuth, ..self }.to_frame(direction)
     }
 }

@@ -41,7 +41,8 @@ use serde::{Deserialize, Serialize};
 use self::batch::DirectionTable;
 use super::beckmann_lobe::{HalfVector, lobe};
 use super::channel_parameters::{ChannelParameter, Declarations};
-use super::{Bsdf, Direction, Model, ModelError};
+use super::sampling::{cosine_density, cosine_lobe};
+use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::optics::microfacet::Beckmann;
 use crate::optics::{RoughTransmittance, TransmittanceCurve, fresnel};
 use crate::parameter::{Parameter, Spread};
@@ -250,5 +251,16 @@ impl Bsdf for BoundRoughPlastic {
     fn evaluate_many(&self, incoming: &[Direction], outgoing: &[Direction], values: &mut [f64]) {
         let directions = self.directions.get_or_init(|| DirectionTable::new(&self.coat, &self.transmittance));
         batch::evaluate(self, directions, incoming, outgoing, values);
+    }
+
+    fn sample(&self, outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
+        (outgoing.z > 0.0).then(|| {
+            let incoming = cosine_lobe([first, second]);
+            Sample::scattered(incoming, cosine_density(&incoming))
+        })
+    }
+
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        if outgoing.z > 0.0 { cosine_density(incoming) } else { 0.0 }
     }
 }

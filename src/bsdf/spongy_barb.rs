@@ -15,10 +15,11 @@
 //! **What it leaves out.** The shift of the band with the angle between light and viewer, more than one band, and whatever
 //! the cylinder leaves out.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_PI, PI};
 
 use super::cylinder::{Cylinder, CylinderDesign, CylinderModel, FibreAngles, over_cosine};
-use super::{Bsdf, Direction, Model, ModelError};
+use super::sampling::anywhere;
+use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::parameter::{Parameter, Spread};
 
 /// A band that cannot be.
@@ -122,6 +123,14 @@ impl Bsdf for SpongyBarb {
     fn evaluate(&self, incoming: &Direction, outgoing: &Direction, values: &mut [f64]) {
         self.far_field(&FibreAngles::between(incoming, outgoing), values);
         over_cosine(incoming, values);
+    }
+
+    fn sample(&self, _outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
+        Some(Sample::scattered(anywhere([first, second]), 0.25 * FRAC_1_PI))
+    }
+
+    fn density(&self, _incoming: &Direction, _outgoing: &Direction) -> f64 {
+        0.25 * FRAC_1_PI
     }
 }
 

@@ -176,12 +176,21 @@ fn as_f64(count: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bsdf::Sample;
 
     struct Lambertian;
 
     impl Bsdf for Lambertian {
         fn evaluate(&self, _: &Direction, _: &Direction, values: &mut [f64]) {
             values.fill(std::f64::consts::FRAC_1_PI);
+        }
+
+        fn sample(&self, _: &Direction, _: [f64; 3]) -> Option<Sample> {
+            unreachable!("an instrument evaluates and never draws")
+        }
+
+        fn density(&self, _: &Direction, _: &Direction) -> f64 {
+            unreachable!("an instrument evaluates and never draws")
         }
     }
 

@@ -15,6 +15,8 @@
 //! The shares of each channel are tabulated over the cosine when the model is bound, some 130 to 1000 rows of two transfer
 //! products; between rows they are cubic, with an error of some 1e-6.
 
+use std::f64::consts::FRAC_1_PI;
+
 use num_complex::Complex64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -25,7 +27,8 @@ use super::{
     AzimuthalLobe, Cylinder, CylinderDesign, CylinderModel, FibreAngles, Group, LongitudinalMapping, over_cosine,
 };
 use crate::bsdf::coated_base::declare_thickness;
-use crate::bsdf::{Bsdf, DesignLayer, Direction, Model, ModelError};
+use crate::bsdf::sampling::anywhere;
+use crate::bsdf::{Bsdf, DesignLayer, Direction, Model, ModelError, Sample};
 use crate::optics::stack::{Layer, transfer};
 use crate::parameter::Parameter;
 
@@ -130,6 +133,14 @@ impl Bsdf for FilmedCylinder {
             self.cylinder.sum_group(group, film, &group.sigma_a, &angles, [reflected, once, twice, twice], value);
         }
         over_cosine(incoming, values);
+    }
+
+    fn sample(&self, _outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
+        Some(Sample::scattered(anywhere([first, second]), 0.25 * FRAC_1_PI))
+    }
+
+    fn density(&self, _incoming: &Direction, _outgoing: &Direction) -> f64 {
+        0.25 * FRAC_1_PI
     }
 }
 

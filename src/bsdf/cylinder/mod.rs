@@ -33,7 +33,10 @@ mod quadrature;
 mod surface;
 mod tabulated;
 
-use super::{Bsdf, Direction};
+use std::f64::consts::FRAC_1_PI;
+
+use super::sampling::anywhere;
+use super::{Bsdf, Direction, Sample};
 use crate::pigment::{InversionError, solve_decreasing};
 
 pub use attenuation::Attenuation;
@@ -377,6 +380,14 @@ impl Bsdf for Cylinder {
     fn evaluate(&self, incoming: &Direction, outgoing: &Direction, values: &mut [f64]) {
         self.far_field(&FibreAngles::between(incoming, outgoing), values);
         over_cosine(incoming, values);
+    }
+
+    fn sample(&self, _outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
+        Some(Sample::scattered(anywhere([first, second]), 0.25 * FRAC_1_PI))
+    }
+
+    fn density(&self, _incoming: &Direction, _outgoing: &Direction) -> f64 {
+        0.25 * FRAC_1_PI
     }
 }
 

@@ -10,11 +10,14 @@
 //! The error is not assumed but measured when a table is built: half-way between its points, where it is largest, in one
 //! direction and then in the other, everywhere. The grid is refined until the sum is small enough.
 
+use std::f64::consts::FRAC_1_PI;
+
 use rayon::prelude::*;
 
 use super::longitudinal::Longitudinal;
 use super::{Cylinder, FibreAngles, over_cosine};
-use crate::bsdf::{Bsdf, Direction};
+use crate::bsdf::sampling::anywhere;
+use crate::bsdf::{Bsdf, Direction, Sample};
 
 /// Channels in an entry.
 const ENTRY_CHANNELS: usize = 5;
@@ -269,6 +272,14 @@ impl Bsdf for TabulatedCylinder {
     fn evaluate(&self, incoming: &Direction, outgoing: &Direction, values: &mut [f64]) {
         self.far_field(&FibreAngles::between(incoming, outgoing), values);
         over_cosine(incoming, values);
+    }
+
+    fn sample(&self, _outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
+        Some(Sample::scattered(anywhere([first, second]), 0.25 * FRAC_1_PI))
+    }
+
+    fn density(&self, _incoming: &Direction, _outgoing: &Direction) -> f64 {
+        0.25 * FRAC_1_PI
     }
 }
 
