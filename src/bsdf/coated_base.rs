@@ -21,12 +21,13 @@ pub use description::Description;
 pub use design::{Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice, OwnMaterial};
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 use self::base::Base;
 use self::design::check_name;
 use self::variable_material::{Channels, VariableMaterial};
 use super::beckmann_lobe::{HalfVector, lobe};
-use super::sampling::{cosine_density, cosine_lobe};
+use super::coat_sampling::{CoatSampler, refract, refracted_cosine};
 use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::optics::microfacet::Beckmann;
 use crate::optics::{Arrangement, LayeredMedium, fresnel};
@@ -146,6 +147,7 @@ impl Model for CoatedBase {
             clear_coat: self.design.clear_coat,
             surface: Beckmann::new(roughness),
             diffuse: self.base.albedo(albedos).into_iter().map(|albedo| albedo / PI).collect(),
+            sampler: OnceLock::new(),
         })
     }
 }
@@ -158,6 +160,8 @@ struct BoundCoatedBase<'a> {
     surface: Beckmann,
     /// ρ/π in each channel.
     diffuse: Vec<f64>,
+    /// What it is drawn from, made at the first draw.
+    sampler: OnceLock<CoatSampler>,
 }
 
 impl Bsdf for BoundCoatedBase<'_> {
@@ -176,19 +180,29 @@ impl Bsdf for BoundCoatedBase<'_> {
         }
     }
 
-    fn sample(&self, outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
-        (outgoing.z > 0.0).then(|| {
-            let incoming = cosine_lobe([first, second]);
-            Sample::scattered(incoming, cosine_density(&incoming))
-        })
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        self.sampler().sample(outgoing, random)
     }
 
     fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
-        if outgoing.z > 0.0 { cosine_density(incoming) } else { 0.0 }
+        self.sampler().density(incoming, outgoing)
     }
 }
 
 impl BoundCoatedBase<'_> {
+    /// Gloss by the reflectance of the smooth layers; what a clear coat takes off, it takes off gloss and base alike.
+    fn sampler(&self) -> &CoatSampler {
+        self.sampler.get_or_init(|| {
+            let front = self.clear_coat.unwrap_or(1.0);
+            let mut reflectance = vec![0.0; self.diffuse.len()];
+            CoatSampler::new(self.surface, self.clear_coat, |cosine| {
+                let inside = refracted_cosine(cosine, front);
+                self.medium.reflectance(front, inside, &mut reflectance);
+                (reflectance.iter().sum(), self.diffuse.iter().sum::<f64>() * PI)
+            })
+        })
+    }
+
     /// `scale` · f for directions in the medium of index `front` that the layers lie in, both above the horizon.
     ///
     fn evaluate_layers(&self, front: f64, incoming: &Direction, outgoing: &Direction, scale: f64, values: &mut [f64]) {
@@ -199,16 +213,6 @@ impl BoundCoatedBase<'_> {
             *value = scale * (lobe * *value + diffuse);
         }
     }
-}
-
-/// Cosine of a direction to the normal below a surface of index `index`, from that above it.
-fn refracted_cosine(cosine: f64, index: f64) -> f64 {
-    (1.0 - (1.0 - cosine * cosine).max(0.0) / (index * index)).sqrt()
-}
-
-/// The direction above a layer of index `index` as it is inside it, still pointing away from the surface.
-fn refract(direction: &Direction, index: f64) -> Direction {
-    Direction::new(direction.x / index, direction.y / index, refracted_cosine(direction.z, index))
 }
 
 /// The distinct layers of a design, and how they follow each other.

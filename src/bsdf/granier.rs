@@ -42,6 +42,8 @@
 //! Where energy counts, use [`super::CoatedBase`]. Left out besides: masking, absorption, light that goes round in the
 //! film more than once, polarisation.
 
+mod sampling;
+
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use schemars::JsonSchema;
@@ -51,7 +53,6 @@ use super::channel_parameters::{ChannelParameter, Declarations};
 use super::interference::Interference;
 use super::iridescent_plastic::thickness_nm;
 use super::rough_plastic;
-use super::sampling::{cosine_density, cosine_lobe};
 use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::parameter::{Parameter, Spread};
 
@@ -353,15 +354,12 @@ impl Bsdf for BoundGranierHeidrich {
         }
     }
 
-    fn sample(&self, outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
-        (outgoing.z > 0.0).then(|| {
-            let incoming = cosine_lobe([first, second]);
-            Sample::scattered(incoming, cosine_density(&incoming))
-        })
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        sampling::sample(self, outgoing, random)
     }
 
     fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
-        if outgoing.z > 0.0 { cosine_density(incoming) } else { 0.0 }
+        sampling::density(self, incoming, outgoing)
     }
 }
 

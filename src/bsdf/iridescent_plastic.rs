@@ -33,15 +33,16 @@
 //! round in the film more than once, absorption, polarisation.
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::beckmann_lobe::{HalfVector, lobe};
 use super::channel_parameters::{ChannelParameter, Declarations};
+use super::coat_sampling::CoatSampler;
 use super::interference::Interference;
 use super::rough_plastic::{self, InternalReflection};
-use super::sampling::{cosine_density, cosine_lobe};
 use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::optics::elementary::sin_cos;
 use crate::optics::microfacet::Beckmann;
@@ -134,6 +135,7 @@ impl Model for IridescentPlastic {
         let double_phase = |(&eta, &wavelength_nm)| 2.0 * PI * eta * thickness_nm / wavelength_nm;
         Box::new(BoundIridescentPlastic {
             interference: self.design.interference,
+            roughness,
             coat: Beckmann::new(roughness),
             transmittances: RoughTransmittance::curves(&eta, roughness),
             specular: of_channels(self.specular).collect(),
@@ -143,6 +145,7 @@ impl Model for IridescentPlastic {
                 .diffuse_factors(eta.iter().copied().zip(of_channels(self.diffuse)), roughness),
             double_phase: eta.iter().zip(&self.wavelengths_nm).map(double_phase).collect(),
             eta,
+            sampler: OnceLock::new(),
         })
     }
 }
@@ -151,6 +154,7 @@ impl Model for IridescentPlastic {
 #[derive(Debug)]
 struct BoundIridescentPlastic {
     interference: Interference,
+    roughness: f64,
     coat: Beckmann,
     transmittances: TransmittanceCurves,
     eta: Vec<f64>,
@@ -160,6 +164,30 @@ struct BoundIridescentPlastic {
     diffuse: Vec<f64>,
     /// 2Φ per unit of `cosθ_ti + cosθ_to`.
     double_phase: Vec<f64>,
+    /// What it is drawn from, made at the first draw.
+    sampler: OnceLock<CoatSampler>,
+}
+
+impl BoundIridescentPlastic {
+    /// Gloss and base are weighed as if they did not interfere: `(√f_r ± √f_t)²` is at most twice their sum.
+    fn sampler(&self) -> &CoatSampler {
+        self.sampler.get_or_init(|| {
+            let spread = |&eta: &f64| PI * RoughTransmittance::diffuse_transmittance(eta, self.roughness);
+            let spread: Vec<f64> = self.eta.iter().map(spread).collect();
+            let mut passed = vec![0.0; self.eta.len()];
+            CoatSampler::new(self.coat, None, |cosine| {
+                passed.fill(1.0);
+                self.transmittances.multiply(cosine, &mut passed);
+                let (mut gloss, mut diffuse) = (0.0, 0.0);
+                for (channel, passed) in passed.iter().enumerate() {
+                    let least = fresnel::dielectric(1.0, self.eta[channel]).unpolarised();
+                    gloss += self.specular[channel] * (1.0 - passed).max(least);
+                    diffuse += self.diffuse[channel] * passed * spread[channel];
+                }
+                (gloss, diffuse)
+            })
+        })
+    }
 }
 
 impl Bsdf for BoundIridescentPlastic {
@@ -180,15 +208,12 @@ impl Bsdf for BoundIridescentPlastic {
         });
     }
 
-    fn sample(&self, outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
-        (outgoing.z > 0.0).then(|| {
-            let incoming = cosine_lobe([first, second]);
-            Sample::scattered(incoming, cosine_density(&incoming))
-        })
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        self.sampler().sample(outgoing, random)
     }
 
     fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
-        if outgoing.z > 0.0 { cosine_density(incoming) } else { 0.0 }
+        self.sampler().density(incoming, outgoing)
     }
 }
 

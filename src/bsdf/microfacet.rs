@@ -19,13 +19,12 @@
 //! standard deviation of the slopes; GGX's slopes have no standard deviation. Left out: what a second microfacet would
 //! catch, absorption, polarisation.
 
-use std::f64::consts::FRAC_1_PI;
+mod sampling;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::channel_parameters::{ChannelParameter, Declarations};
-use super::sampling::anywhere;
 use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::optics::fresnel;
 use crate::optics::microfacet::{Beckmann, Ggx};
@@ -144,6 +143,13 @@ impl Surface {
             Self::Ggx(microfacets) => microfacets.visible_share(cos_theta),
         }
     }
+
+    fn visible_normal(&self, viewer: &Direction, random: [f64; 2]) -> Direction {
+        match self {
+            Self::Beckmann(microfacets) => microfacets.visible_normal(viewer, random),
+            Self::Ggx(microfacets) => microfacets.visible_normal(viewer, random),
+        }
+    }
 }
 
 /// An interface with its parameters given.
@@ -169,12 +175,12 @@ impl Bsdf for BoundInterface {
         }
     }
 
-    fn sample(&self, _outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
-        Some(Sample::scattered(anywhere([first, second]), 0.25 * FRAC_1_PI))
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        sampling::sample(self, outgoing, random)
     }
 
-    fn density(&self, _incoming: &Direction, _outgoing: &Direction) -> f64 {
-        0.25 * FRAC_1_PI
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        sampling::density(self, incoming, outgoing)
     }
 }
 

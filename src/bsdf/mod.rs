@@ -7,6 +7,7 @@
 
 mod beckmann_lobe;
 mod channel_parameters;
+mod coat_sampling;
 mod coated_base;
 pub mod cylinder;
 mod feather;

@@ -41,7 +41,7 @@ use serde::{Deserialize, Serialize};
 use self::batch::DirectionTable;
 use super::beckmann_lobe::{HalfVector, lobe};
 use super::channel_parameters::{ChannelParameter, Declarations};
-use super::sampling::{cosine_density, cosine_lobe};
+use super::coat_sampling::CoatSampler;
 use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::optics::microfacet::Beckmann;
 use crate::optics::{RoughTransmittance, TransmittanceCurve, fresnel};
@@ -214,6 +214,7 @@ impl Model for RoughPlastic {
                 .internal_reflection
                 .diffuse_factors(of_channel(self.diffuse).map(|diffuse| (eta, diffuse)), roughness),
             directions: OnceLock::new(),
+            sampler: OnceLock::new(),
         })
     }
 }
@@ -231,6 +232,27 @@ struct BoundRoughPlastic {
     diffuse: Vec<f64>,
     /// What many pairs at a time need, made at the first of them.
     directions: OnceLock<DirectionTable>,
+    /// What it is drawn from, made at the first draw.
+    sampler: OnceLock<CoatSampler>,
+}
+
+impl BoundRoughPlastic {
+    fn sampler(&self) -> &CoatSampler {
+        self.sampler.get_or_init(|| {
+            let of_mean = 1.0 / self.specular.len() as f64;
+            let specular = self.specular.iter().sum::<f64>() * of_mean;
+            // ∫ T(θi) cosθi dωi is π times the transmittance of diffuse light.
+            let diffuse = self.diffuse.iter().sum::<f64>()
+                * of_mean
+                * PI
+                * RoughTransmittance::diffuse_transmittance(self.eta, self.roughness);
+            let least = fresnel::dielectric(1.0, self.eta).unpolarised();
+            CoatSampler::new(self.coat, None, |cosine| {
+                let passed = self.transmittance.at(cosine);
+                (specular * (1.0 - passed).max(least), diffuse * passed)
+            })
+        })
+    }
 }
 
 impl Bsdf for BoundRoughPlastic {
@@ -253,14 +275,11 @@ impl Bsdf for BoundRoughPlastic {
         batch::evaluate(self, directions, incoming, outgoing, values);
     }
 
-    fn sample(&self, outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
-        (outgoing.z > 0.0).then(|| {
-            let incoming = cosine_lobe([first, second]);
-            Sample::scattered(incoming, cosine_density(&incoming))
-        })
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        self.sampler().sample(outgoing, random)
     }
 
     fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
-        if outgoing.z > 0.0 { cosine_density(incoming) } else { 0.0 }
+        self.sampler().density(incoming, outgoing)
     }
 }

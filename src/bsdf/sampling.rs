@@ -4,7 +4,7 @@
 //! fell into, so that it serves again; the density is the sum of all lobes' densities, each times the probability of its
 //! choice, never that of the chosen lobe alone (the second thesis's equations 3.13 and 3.30 leave the weights out).
 
-use std::f64::consts::{FRAC_1_PI, FRAC_PI_4, TAU};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 
 use super::Direction;
 
@@ -51,14 +51,6 @@ pub(super) fn cosine_density(direction: &Direction) -> f64 {
     direction.z.max(0.0) * FRAC_1_PI
 }
 
-/// A direction of the whole sphere, all alike.
-pub(super) fn anywhere(random: [f64; 2]) -> Direction {
-    let z = 1.0 - 2.0 * random[0];
-    let (sin_azimuth, cos_azimuth) = (TAU * random[1]).sin_cos();
-    let radius = (1.0 - z * z).max(0.0).sqrt();
-    Direction::new(radius * cos_azimuth, radius * sin_azimuth, z)
-}
-
 /// A uniform number in [0, 1) that makes several choices, one after the other.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Choice(pub(super) f64);
@@ -73,7 +65,33 @@ impl Choice {
         self.0 = self.0.min(LARGEST_BELOW_1);
         taken
     }
+
+    /// The position of one of several things by their probabilities, which sum to 1.
+    pub(super) fn index(&mut self, probabilities: &[f64]) -> usize {
+        let mut remaining = 1.0;
+        let last = probabilities.len() - 1;
+        for (position, probability) in probabilities[..last].iter().enumerate() {
+            if self.takes(probability / remaining) {
+                return position;
+            }
+            remaining -= probability;
+        }
+        last
+    }
 }
 
 /// The largest number that a uniform draw in [0, 1) can give.
 const LARGEST_BELOW_1: f64 = 1.0 - 0.5 * f64::EPSILON;
+
+/// The direction at an angle to an axis whose cosine is given, and at an azimuth about it.
+pub(super) fn about(axis: &Direction, cosine: f64, azimuth: f64) -> Direction {
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let (sin_azimuth, cos_azimuth) = azimuth.sin_cos();
+    // Two axes across the first, without a square root (Duff et al. 2017, *Building an orthonormal basis, revisited*).
+    let sign = 1.0_f64.copysign(axis.z);
+    let a = -1.0 / (sign + axis.z);
+    let b = axis.x * axis.y * a;
+    let first = Direction::new(1.0 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x);
+    let second = Direction::new(b, sign + axis.y * axis.y * a, -axis.y);
+    sine * cos_azimuth * first + sine * sin_azimuth * second + cosine * axis
+}

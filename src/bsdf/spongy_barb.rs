@@ -15,10 +15,12 @@
 //! **What it leaves out.** The shift of the band with the angle between light and viewer, more than one band, and whatever
 //! the cylinder leaves out.
 
-use std::f64::consts::{FRAC_1_PI, PI};
+use std::f64::consts::PI;
 
-use super::cylinder::{Cylinder, CylinderDesign, CylinderModel, FibreAngles, over_cosine};
-use super::sampling::anywhere;
+use super::cylinder::{
+    AzimuthalSource, Cylinder, CylinderDesign, CylinderLobes, CylinderModel, FibreAngles, FibreSampler, LazySampler,
+    over_cosine,
+};
 use super::{Bsdf, Direction, Model, ModelError, Sample};
 use crate::parameter::{Parameter, Spread};
 
@@ -85,6 +87,7 @@ pub struct SpongyBarb {
     cylinder: Cylinder,
     /// b of each channel.
     shares: Vec<f64>,
+    sampler: LazySampler,
 }
 
 impl SpongyBarb {
@@ -102,7 +105,11 @@ impl SpongyBarb {
     }
 
     fn from_checked(cylinder: Cylinder, wavelengths_nm: &[f64], band: SpongeBand) -> Self {
-        Self { cylinder, shares: wavelengths_nm.iter().map(|&wavelength| band.share(wavelength)).collect() }
+        Self {
+            cylinder,
+            shares: wavelengths_nm.iter().map(|&wavelength| band.share(wavelength)).collect(),
+            sampler: LazySampler::default(),
+        }
     }
 
     /// Far-field scattering function S, 1/sr, one value a channel.
@@ -118,6 +125,35 @@ impl SpongyBarb {
     }
 }
 
+impl SpongyBarb {
+    fn sampler(&self) -> &FibreSampler {
+        self.sampler.get(|| self.cylinder.sampler_of(Lobes { lobes: CylinderLobes::new(&self.cylinder), barb: self }))
+    }
+}
+
+/// The lobes of a spongy barb, for its sampler.
+struct Lobes<'a> {
+    lobes: CylinderLobes<'a>,
+    barb: &'a SpongyBarb,
+}
+
+impl AzimuthalSource for Lobes<'_> {
+    fn lobe(&mut self, angles: &FibreAngles, path: usize) -> f64 {
+        let values = self.lobes.channels(angles, path);
+        let unscattered = |share: &f64| if path == 0 { 1.0 } else { 1.0 - share };
+        let sum: f64 = values.iter().zip(&self.barb.shares).map(|(value, share)| unscattered(share) * value).sum();
+        sum / values.len() as f64
+    }
+
+    fn sponge(&mut self, angles: &FibreAngles) -> f64 {
+        let mut sum = 0.0;
+        self.barb.cylinder.outside_and_inside(angles, |channel, _, transmitted| {
+            sum += self.barb.shares[channel] * transmitted;
+        });
+        sum / self.barb.shares.len() as f64
+    }
+}
+
 impl Bsdf for SpongyBarb {
     /// f = S/|n·ωi|, as for the cylinder.
     fn evaluate(&self, incoming: &Direction, outgoing: &Direction, values: &mut [f64]) {
@@ -125,12 +161,12 @@ impl Bsdf for SpongyBarb {
         over_cosine(incoming, values);
     }
 
-    fn sample(&self, _outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
-        Some(Sample::scattered(anywhere([first, second]), 0.25 * FRAC_1_PI))
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        self.sampler().sample(outgoing, random)
     }
 
-    fn density(&self, _incoming: &Direction, _outgoing: &Direction) -> f64 {
-        0.25 * FRAC_1_PI
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        self.sampler().density(incoming, outgoing)
     }
 }
 

@@ -2,6 +2,10 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::Vector3;
+
+use super::visible_normals;
+
 /// GGX (Walter et al. 2007, section 5.2; Trowbridge and Reitz 1975): slopes have the density of a bivariate t
 /// distribution with two degrees of freedom, scale α.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,5 +39,11 @@ impl Ggx {
         let cosine = cos_theta.abs();
         let sine_squared = (1.0 - cosine * cosine).max(0.0);
         2.0 * cosine / (cosine + (cosine * cosine + self.alpha * self.alpha * sine_squared).sqrt())
+    }
+
+    /// A normal drawn with the density D(m) G1(o) (o·m)₊/cosθo of those that a viewer above the horizon sees, from two
+    /// uniform numbers in [0, 1).
+    pub fn visible_normal(&self, viewer: &Vector3<f64>, random: [f64; 2]) -> Vector3<f64> {
+        visible_normals::ggx(self.alpha, viewer, random)
     }
 }

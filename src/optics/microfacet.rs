@@ -5,7 +5,10 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::Vector3;
+
 pub use super::ggx::Ggx;
+use super::visible_normals;
 
 /// Beckmann's distribution: slopes are Gaussian in every direction with standard deviation α/√2.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,5 +44,11 @@ impl Beckmann {
         // Infinite above (G1 = 1), 0 at the horizon (G1 = 0).
         let a = 1.0 / (self.alpha * tangent);
         2.0 / (1.0 + libm::erf(a) + (-a * a).exp() / (a * PI.sqrt()))
+    }
+
+    /// A normal drawn with the density D(m) G1(o) (o·m)₊/cosθo of those that a viewer above the horizon sees, from two
+    /// uniform numbers in [0, 1).
+    pub fn visible_normal(&self, viewer: &Vector3<f64>, random: [f64; 2]) -> Vector3<f64> {
+        visible_normals::beckmann(self.alpha, viewer, random)
     }
 }

@@ -25,6 +25,7 @@ mod rough_interface;
 mod rough_transmittance;
 pub mod stack;
 mod stack_kernel;
+mod visible_normals;
 
 pub use layered::{Arrangement, LayeredMedium, Permittivity, double_wavenumbers};
 pub use material::{Dispersion, IndexTable, MaterialError};

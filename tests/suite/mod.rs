@@ -24,6 +24,7 @@ mod paints;
 mod pigment;
 mod report;
 mod rough_plastic;
+mod sampling;
 mod schema;
 mod tables;
 mod tangent;

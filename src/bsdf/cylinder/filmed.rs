@@ -15,8 +15,6 @@
 //! The shares of each channel are tabulated over the cosine when the model is bound, some 130 to 1000 rows of two transfer
 //! products; between rows they are cubic, with an error of some 1e-6.
 
-use std::f64::consts::FRAC_1_PI;
-
 use num_complex::Complex64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -24,10 +22,10 @@ use serde::{Deserialize, Serialize};
 use super::quadrature::{Analyticity, PanelLengths};
 use super::surface::{Surface, SurfaceShares};
 use super::{
-    AzimuthalLobe, Cylinder, CylinderDesign, CylinderModel, FibreAngles, Group, LongitudinalMapping, over_cosine,
+    AzimuthalLobe, AzimuthalSource, Cylinder, CylinderDesign, CylinderModel, FibreAngles, FibreSampler, Group,
+    LazySampler, LongitudinalMapping, only, over_cosine,
 };
 use crate::bsdf::coated_base::declare_thickness;
-use crate::bsdf::sampling::anywhere;
 use crate::bsdf::{Bsdf, DesignLayer, Direction, Model, ModelError, Sample};
 use crate::optics::stack::{Layer, transfer};
 use crate::parameter::Parameter;
@@ -111,7 +109,7 @@ impl Model for FilmedCylinderModel {
                 (Group { eta, sigma_a: vec![sigma_a], panel_lengths: PanelLengths::new(analyticity) }, film)
             });
         let channels = channels.collect();
-        Box::new(FilmedCylinder { channels, cylinder })
+        Box::new(FilmedCylinder { channels, cylinder, sampler: LazySampler::default() })
     }
 }
 
@@ -122,6 +120,28 @@ struct FilmedCylinder {
     cylinder: Cylinder,
     /// Every channel is a fibre of its own, since the layers tell wavelengths apart.
     channels: Vec<(Group, FilmTable)>,
+    sampler: LazySampler,
+}
+
+impl FilmedCylinder {
+    fn sampler(&self) -> &FibreSampler {
+        self.sampler.get(|| self.cylinder.sampler_of(self))
+    }
+
+    /// Σ Mₚ Nₚ for given Mₚ, the fourth for all paths after TRT.
+    fn sum_lobes(&self, angles: &FibreAngles, longitudinal: [f64; 4], values: &mut [f64]) {
+        for ((group, film), value) in self.channels.iter().zip(values.chunks_exact_mut(1)) {
+            self.cylinder.sum_group(group, film, &group.sigma_a, angles, longitudinal, value);
+        }
+    }
+}
+
+impl AzimuthalSource for &FilmedCylinder {
+    fn lobe(&mut self, angles: &FibreAngles, path: usize) -> f64 {
+        let mut values = vec![0.0; self.channels.len()];
+        self.sum_lobes(angles, only(path), &mut values);
+        values.iter().sum::<f64>() / values.len() as f64
+    }
 }
 
 impl Bsdf for FilmedCylinder {
@@ -129,18 +149,16 @@ impl Bsdf for FilmedCylinder {
     fn evaluate(&self, incoming: &Direction, outgoing: &Direction, values: &mut [f64]) {
         let angles = FibreAngles::between(incoming, outgoing);
         let [reflected, once, twice] = self.cylinder.longitudinal.evaluate(&angles);
-        for ((group, film), value) in self.channels.iter().zip(values.chunks_exact_mut(1)) {
-            self.cylinder.sum_group(group, film, &group.sigma_a, &angles, [reflected, once, twice, twice], value);
-        }
+        self.sum_lobes(&angles, [reflected, once, twice, twice], values);
         over_cosine(incoming, values);
     }
 
-    fn sample(&self, _outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
-        Some(Sample::scattered(anywhere([first, second]), 0.25 * FRAC_1_PI))
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        self.sampler().sample(outgoing, random)
     }
 
-    fn density(&self, _incoming: &Direction, _outgoing: &Direction) -> f64 {
-        0.25 * FRAC_1_PI
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        self.sampler().density(incoming, outgoing)
     }
 }
 

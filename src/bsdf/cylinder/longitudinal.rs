@@ -70,6 +70,24 @@ impl Longitudinal {
     }
 }
 
+impl Longitudinal {
+    /// Draws the sine of the light's inclination with the density Mₚ, for the viewer's inclination, from two uniform numbers in
+    /// [0, 1).
+    ///
+    /// Mₚ is what remains of a lobe e^{u/v} about a direction at −θo, u the cosine to it, when azimuths are summed over.
+    /// u is drawn, and turned about that direction (d'Eon et al. 2013, equations 10 and 11); written as
+    /// 1 − u = −v ln(ξ + (1 − ξ) e^{−2/v}), which loses no digits for small v.
+    pub(super) fn draw(&self, p: usize, sin_theta_o: f64, cos_theta_o: f64, random: [f64; 2]) -> f64 {
+        let inverse_v = self.inverse_variances[p];
+        // In (0, 1], so that the logarithm is finite.
+        let share = 1.0 - random[0];
+        let from_peak = (-(share + (1.0 - share) * (-2.0 * inverse_v).exp()).ln() / inverse_v).min(2.0);
+        let sine = (from_peak * (2.0 - from_peak)).sqrt();
+        let turn = (std::f64::consts::TAU * random[1]).cos();
+        (sine * turn * cos_theta_o - (1.0 - from_peak) * sin_theta_o).clamp(-1.0, 1.0)
+    }
+}
+
 /// Number of terms of [`CHEBYSHEV`]; the first left out is 6e-20.
 const CHEBYSHEV_TERMS: usize = 24;
 

@@ -23,6 +23,7 @@
 //! (βₘ 0.6, light across the fibre) to 0.72 (βₘ 0.3, light at 87° of inclination).
 
 mod attenuation;
+mod azimuth_table;
 mod azimuthal;
 mod far_field;
 mod filmed;
@@ -30,12 +31,10 @@ mod longitudinal;
 mod model;
 mod near_field;
 mod quadrature;
+mod sampling;
 mod surface;
 mod tabulated;
 
-use std::f64::consts::FRAC_1_PI;
-
-use super::sampling::anywhere;
 use super::{Bsdf, Direction, Sample};
 use crate::pigment::{InversionError, solve_decreasing};
 
@@ -50,6 +49,7 @@ use azimuthal::{NarrowLogistic, TrimmedLogistic, WrappedGaussian};
 use far_field::{FarField, Refraction};
 use longitudinal::Longitudinal;
 use quadrature::{Analyticity, PanelLengths};
+pub(super) use sampling::{AzimuthalSource, FibreSampler, LazySampler};
 use surface::{BareSurface, Surface};
 
 /// Light and viewer as the fibre sees them.
@@ -174,6 +174,7 @@ pub struct Cylinder {
     groups: Vec<Group>,
     longitudinal: Longitudinal,
     lobe: Lobe,
+    sampler: LazySampler,
 }
 
 /// Neighbouring channels of one index: they share all angles and reflectances.
@@ -231,7 +232,12 @@ impl Cylinder {
                 }
             }
         }
-        Self { groups, longitudinal: Longitudinal::new(parameters.mapping.variance(parameters.beta_m)), lobe }
+        Self {
+            groups,
+            longitudinal: Longitudinal::new(parameters.mapping.variance(parameters.beta_m)),
+            lobe,
+            sampler: LazySampler::default(),
+        }
     }
 
     /// Number of channels.
@@ -249,6 +255,15 @@ impl Cylinder {
         assert_eq!(values.len(), self.channel_count(), "one value a channel");
         let [reflected, once, twice] = self.longitudinal.evaluate(angles);
         self.sum_lobes(angles, [reflected, once, twice, twice], values);
+    }
+
+    /// What the fibre is drawn from, a source of lobes given.
+    pub(super) fn sampler_of(&self, source: impl AzimuthalSource) -> FibreSampler {
+        FibreSampler::new(self.longitudinal.clone(), self.lobe.analytic_height(), source)
+    }
+
+    fn sampler(&self) -> &FibreSampler {
+        self.sampler.get(|| self.sampler_of(CylinderLobes::new(self)))
     }
 
     /// Σ Mₚ Nₚ for given Mₚ, the fourth for all paths after TRT.
@@ -382,13 +397,43 @@ impl Bsdf for Cylinder {
         over_cosine(incoming, values);
     }
 
-    fn sample(&self, _outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
-        Some(Sample::scattered(anywhere([first, second]), 0.25 * FRAC_1_PI))
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        self.sampler().sample(outgoing, random)
     }
 
-    fn density(&self, _incoming: &Direction, _outgoing: &Direction) -> f64 {
-        0.25 * FRAC_1_PI
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        self.sampler().density(incoming, outgoing)
     }
+}
+
+/// The lobes around a fibre, for its sampler.
+pub(super) struct CylinderLobes<'a> {
+    cylinder: &'a Cylinder,
+    values: Vec<f64>,
+}
+
+impl<'a> CylinderLobes<'a> {
+    pub(super) fn new(cylinder: &'a Cylinder) -> Self {
+        Self { cylinder, values: vec![0.0; cylinder.channel_count()] }
+    }
+
+    /// Nₚ, one a channel.
+    pub(super) fn channels(&mut self, angles: &FibreAngles, path: usize) -> &[f64] {
+        self.cylinder.sum_lobes(angles, only(path), &mut self.values);
+        &self.values
+    }
+}
+
+impl AzimuthalSource for CylinderLobes<'_> {
+    fn lobe(&mut self, angles: &FibreAngles, path: usize) -> f64 {
+        let channels = self.channels(angles, path);
+        channels.iter().sum::<f64>() / channels.len() as f64
+    }
+}
+
+/// Mₚ = 1 for one path and 0 for the others.
+fn only(path: usize) -> [f64; 4] {
+    std::array::from_fn(|other| if other == path { 1.0 } else { 0.0 })
 }
 
 /// Turns a scattering function into a BSDF.

@@ -10,13 +10,10 @@
 //! The error is not assumed but measured when a table is built: half-way between its points, where it is largest, in one
 //! direction and then in the other, everywhere. The grid is refined until the sum is small enough.
 
-use std::f64::consts::FRAC_1_PI;
-
 use rayon::prelude::*;
 
 use super::longitudinal::Longitudinal;
-use super::{Cylinder, FibreAngles, over_cosine};
-use crate::bsdf::sampling::anywhere;
+use super::{AzimuthalSource, Cylinder, FibreAngles, FibreSampler, LazySampler, only, over_cosine};
 use crate::bsdf::{Bsdf, Direction, Sample};
 
 /// Channels in an entry.
@@ -35,6 +32,8 @@ pub struct TabulatedCylinder {
     /// N₃₊ over √cosθo, from 0 to 1, all channels of a point together.
     later: Vec<f32>,
     error: f64,
+    lobe_width: f64,
+    sampler: LazySampler,
 }
 
 /// Intervals of the list of later paths: enough for 1e-5 of its largest value at any absorption.
@@ -149,7 +148,16 @@ impl TabulatedCylinder {
         debug_assert_eq!(entries.len(), (grid.inclinations + 1) * grid.columns() * blocks);
         let later =
             (0..=LATER_INTERVALS).flat_map(|k| cylinder.later_lobe(k as f64 / LATER_INTERVALS as f64)).collect();
-        Self { longitudinal: cylinder.longitudinal.clone(), channel_count, grid, entries, later, error: f64::NAN }
+        Self {
+            longitudinal: cylinder.longitudinal.clone(),
+            channel_count,
+            grid,
+            entries,
+            later,
+            error: f64::NAN,
+            lobe_width: cylinder.lobe.analytic_height(),
+            sampler: LazySampler::default(),
+        }
     }
 
     /// Largest error half-way between rows and half-way between columns, in units of a lobe's largest value over azimuths.
@@ -268,18 +276,43 @@ impl TabulatedCylinder {
     }
 }
 
+impl TabulatedCylinder {
+    fn sampler(&self) -> &FibreSampler {
+        self.sampler.get(|| {
+            let lobes = Lobes { table: self, values: vec![0.0; self.channel_count] };
+            FibreSampler::new(self.longitudinal.clone(), self.lobe_width, lobes)
+        })
+    }
+}
+
+/// The tabulated lobes, for a sampler.
+struct Lobes<'a> {
+    table: &'a TabulatedCylinder,
+    values: Vec<f64>,
+}
+
+impl AzimuthalSource for Lobes<'_> {
+    fn lobe(&mut self, angles: &FibreAngles, path: usize) -> f64 {
+        let entered = if path == 0 { 1.0 } else { angles.cos_theta_o * angles.cos_theta_o };
+        let [longitudinal @ .., later] = only(path);
+        self.table.interpolate(angles.cos_theta_o, angles.phi, longitudinal.map(|m| entered * m), &mut self.values);
+        self.table.add_later(angles.cos_theta_o, later, &mut self.values);
+        self.values.iter().sum::<f64>() / self.values.len() as f64
+    }
+}
+
 impl Bsdf for TabulatedCylinder {
     fn evaluate(&self, incoming: &Direction, outgoing: &Direction, values: &mut [f64]) {
         self.far_field(&FibreAngles::between(incoming, outgoing), values);
         over_cosine(incoming, values);
     }
 
-    fn sample(&self, _outgoing: &Direction, [first, second, _]: [f64; 3]) -> Option<Sample> {
-        Some(Sample::scattered(anywhere([first, second]), 0.25 * FRAC_1_PI))
+    fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        self.sampler().sample(outgoing, random)
     }
 
-    fn density(&self, _incoming: &Direction, _outgoing: &Direction) -> f64 {
-        0.25 * FRAC_1_PI
+    fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
+        self.sampler().density(incoming, outgoing)
     }
 }
 
