@@ -175,7 +175,7 @@ fn cell_of(direction: &Direction, polar: usize) -> usize {
 /// Share of draws that are rejected, by a scrambled Sobol sequence: its error falls nearly as one over the number of points,
 /// where independent draws would need millions for 1e-3.
 fn rejected_share(bsdf: &dyn Bsdf, outgoing: &Direction) -> f64 {
-    let count = 1 << 15;
+    let count = 1 << 16;
     let rejected = (0..count).filter(|&index| {
         let random = [0, 1, 2].map(|dimension| f64::from(sobol_burley::sample(index, dimension, 7)));
         bsdf.sample(outgoing, random).is_none()
