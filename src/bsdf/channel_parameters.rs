@@ -22,6 +22,17 @@ impl ChannelParameter {
     }
 }
 
+/// What ends the names of parameters in three channels.
+const RGB: [&str; 3] = ["r", "g", "b"];
+
+/// The end of a declared name that says its channel, `_r` or `_2`, if it is `name` in one channel.
+pub(crate) fn channel_suffix<'a>(declared: &'a str, name: &str) -> Option<&'a str> {
+    let suffix = declared.strip_prefix(name)?;
+    let channel = suffix.strip_prefix('_')?;
+    let is_number = !channel.is_empty() && channel.bytes().all(|byte| byte.is_ascii_digit());
+    (is_number || RGB.contains(&channel)).then_some(suffix)
+}
+
 /// A model's list of parameters in the making.
 #[derive(Debug)]
 pub(super) struct Declarations<'a> {
@@ -65,10 +76,8 @@ impl<'a> Declarations<'a> {
             return ChannelParameter::Shared(first);
         }
         for (channel, wavelength_nm) in self.wavelengths_nm.iter().enumerate() {
-            let suffix = match (self.wavelengths_nm.len(), channel) {
-                (3, 0) => "r".to_owned(),
-                (3, 1) => "g".to_owned(),
-                (3, 2) => "b".to_owned(),
+            let suffix = match self.wavelengths_nm.len() {
+                3 => RGB[channel].to_owned(),
                 _ => (channel + 1).to_string(),
             };
             self.parameters.push(Parameter {

@@ -22,6 +22,7 @@ mod rough_plastic;
 mod sampling;
 pub mod spongy_barb;
 
+pub(crate) use channel_parameters::channel_suffix;
 pub use coated_base::{
     CoatedBase, Description, Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice, OwnMaterial,
 };

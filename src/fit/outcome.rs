@@ -192,6 +192,22 @@ pub struct Goodness {
     pub aicc: Option<f64>,
 }
 
+impl Goodness {
+    /// Akaike's criterion with small-sample correction (Hurvich and Tsai 1989) as if this many readings were independent;
+    /// None where they are too few, or the misfit is no positive number.
+    pub fn aicc_on(&self, effective_readings: f64) -> Option<f64> {
+        #[expect(clippy::cast_precision_loss, reason = "numbers of readings and parameters are far below 2^53")]
+        let (count, free) = (self.readings as f64, self.free_parameters as f64);
+        let (parameters, misfit) = match self.sigma_source {
+            SigmaSource::Known => (free, self.chi_squared * effective_readings / count),
+            SigmaSource::Estimated => (free + 1.0, effective_readings * (self.chi_squared / count).ln()),
+        };
+        let room = effective_readings - parameters - 1.0;
+        (room > 0.0 && misfit.is_finite())
+            .then(|| misfit + 2.0 * parameters + 2.0 * parameters * (parameters + 1.0) / room)
+    }
+}
+
 /// One iteration of the start that won.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TracePoint {

@@ -77,11 +77,7 @@ fn goodness(objective: &Objective<'_>, best: &Found, settings: &Settings) -> Goo
     // Within two standard errors of zero the correlation is taken as none.
     let significant = correlation > 2.0 / count.sqrt();
     let effective = if significant { count * (1.0 - correlation) / (1.0 + correlation) } else { count }.max(1.0);
-    let k = free as f64 + if known { 0.0 } else { 1.0 };
-    let misfit = if known { chi_squared * effective / count } else { effective * (chi_squared / count).ln() };
-    let room = effective - k - 1.0;
-    let aicc = (room > 0.0 && misfit.is_finite()).then(|| misfit + 2.0 * k + 2.0 * k * (k + 1.0) / room);
-    Goodness {
+    let goodness = Goodness {
         readings: objective.readings,
         effective_readings: effective,
         free_parameters: free,
@@ -91,8 +87,9 @@ fn goodness(objective: &Objective<'_>, best: &Found, settings: &Settings) -> Goo
         sigma_source: if known { SigmaSource::Known } else { SigmaSource::Estimated },
         sigma_scale: if known { 1.0 } else { per_freedom.map_or(1.0, f64::sqrt) },
         error_widening: if settings.correlated_errors { (count / effective).sqrt() } else { 1.0 },
-        aicc,
-    }
+        aicc: None,
+    };
+    Goodness { aicc: goodness.aicc_on(effective), ..goodness }
 }
 
 fn rows(objective: &Objective<'_>, free: &[f64]) -> Vec<f64> {

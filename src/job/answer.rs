@@ -1,8 +1,10 @@
 //! The answer in a sentence or two: value ± error, its rivals, what stays open.
 
+use super::held_out::comparison_answer;
 use super::outcome::{Case, CaseData, Outcome, PeakFit, ThicknessOrder};
 use crate::fit::{Bound, Estimate, Fit, Minimum, RIVAL_SHARE, StopReason, misfit};
-use crate::number::{minus, to_place, with_error};
+use crate::measure::Compared;
+use crate::number::{minus, significant, to_place, with_error};
 
 /// Most parameters that a sentence can carry.
 const MOST_NAMED: usize = 3;
@@ -21,7 +23,8 @@ pub(super) fn job_answer(outcome: &Outcome) -> String {
     sentences.push(format!("{assumed}{}", main.answer));
     let main = sentences.join(" ");
     let others = others.iter().map(|case| format!("Assuming {}: {}", case.name, values_sentence(case)));
-    std::iter::once(main).chain(others).collect::<Vec<_>>().join("\n")
+    let judged = outcome.comparison.as_ref().and_then(|comparison| comparison_answer(comparison, &outcome.cases));
+    std::iter::once(main).chain(others).chain(judged).collect::<Vec<_>>().join("\n")
 }
 
 /// The answer of one case.
@@ -45,7 +48,8 @@ pub(super) fn case_answer(case: &Case) -> String {
     sentences.extend(reddening(case));
     sentences.extend(misfit(&fit.goodness));
     if !fit.open_directions.is_empty() {
-        let open: Vec<&str> = fit.open_directions.iter().map(|direction| direction.text.as_str()).collect();
+        let open: Vec<&str> =
+            fit.open_directions.iter().map(|direction| direction.text.trim_end_matches('.')).collect();
         sentences.push(format!("The data leave open: {}.", open.join("; ")));
     }
     match fit.stop {
@@ -59,7 +63,7 @@ pub(super) fn case_answer(case: &Case) -> String {
 }
 
 /// The fitted values, or every order's where the readings do not tell them apart.
-fn values_sentence(case: &Case) -> String {
+pub(super) fn values_sentence(case: &Case) -> String {
     let (first, last) = match case.orders.as_slice() {
         [] => return main_values(&case.fit),
         [only] => {
@@ -105,13 +109,17 @@ fn misfit_size(case: &Case) -> Option<String> {
         CaseData::Peaks { peaks, .. } if peaks.iter().all(|peak| peak.sigma_nm.is_none()) => {
             Some(format!("The model misses the fitted peaks by {rms:.2} nm (rms)."))
         }
-        CaseData::Spectra { spectra, .. } if spectra.iter().all(|spectrum| spectrum.sigmas.is_none()) => {
+        CaseData::Spectra { spectra, compare, .. } if spectra.iter().all(|spectrum| spectrum.sigmas.is_none()) => {
             let fitted = spectra.iter().filter(|spectrum| spectrum.fitted).flat_map(|spectrum| &spectrum.measured);
-            let (squares, count) = fitted.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
+            let compared = fitted.map(|value| compare.of(*value));
+            let (squares, count) = compared.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
             let typical = (squares / count).sqrt();
-            (typical > 0.0).then(|| {
-                format!("The model misses the readings by {} (rms, of their own rms).", percent(rms / typical))
-            })
+            let what = match compare {
+                Compared::Values => "the readings",
+                Compared::CubeRoots => "the cube roots of the readings",
+            };
+            (typical > 0.0)
+                .then(|| format!("The model misses {what} by {} (rms, of their own rms).", percent(rms / typical)))
         }
         _ => None,
     }
@@ -133,9 +141,22 @@ fn reddening(case: &Case) -> Option<String> {
 /// A held-out peak that is missed by more than this many times the misfit of the fitted ones tells against the model.
 const BEYOND: f64 = 3.0;
 
-/// How well peaks that the fit did not see are predicted.
+/// How well readings that the fit did not see are predicted.
 fn held_out(case: &Case) -> Option<String> {
-    let CaseData::Peaks { peaks, .. } = &case.data else { return None };
+    match &case.data {
+        CaseData::Peaks { peaks, .. } => held_out_peaks(peaks),
+        CaseData::Spectra { .. } => case.held_out.as_ref().map(|held_out| {
+            format!(
+                "It misses the {} readings held out by {} (rms; of cube roots {}).",
+                held_out.readings,
+                significant(held_out.rms, 3),
+                significant(held_out.rms_of_cube_roots, 3)
+            )
+        }),
+    }
+}
+
+fn held_out_peaks(peaks: &[PeakFit]) -> Option<String> {
     let held: Vec<&PeakFit> = peaks.iter().filter(|peak| !peak.fitted).collect();
     let error = |peak: &&PeakFit| peak.model_nm.map(|nm| nm - peak.measured_nm);
     let text = |peak: &&PeakFit| error(peak).map_or_else(|| "no peak".into(), |nm| minus(&format!("{nm:+.1}")));

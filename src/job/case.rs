@@ -8,12 +8,13 @@ use super::film_peaks::FilmPeaks;
 use super::load::input_file;
 use super::peaks::PeaksProblem;
 use super::spectra::{SpectraProblem, SpectraSetup};
-use super::values::{Values, check_inside, index_of};
+use super::values::{Values, check_inside, index_of, places_of, said_of};
 use super::{InputFile, JobError, JobFile, synthetic};
+use crate::bsdf::channel_suffix;
 use crate::fit::{Assignment, Control, Fit, FitError, Loss, Prior, Residuals, Role, check, fit, parse_tie};
 use crate::measure::{
-    Calibration, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table, TableText,
-    ThinFilmLaw, read_table,
+    Calibration, Compared, Geometry, GonioTable, Instrument, PeakModel, PeakReading, PeakTable, Spectrum, Table,
+    TableText, ThinFilmLaw, read_table,
 };
 use crate::parameter::{Parameter, Spread};
 
@@ -128,17 +129,23 @@ fn fitted(data: &DataFile, ids: &[(&str, &Geometry)]) -> Result<Vec<bool>, JobEr
             return Err(JobError::key("data.hold_out", problem));
         }
     }
+    if let Some(every @ (0 | 1)) = data.hold_out_every {
+        let problem = format!("found {every}; expected 2 (hold out every other) or more");
+        return Err(JobError::key("data.hold_out_every", problem));
+    }
     if data.fit_every == 0 {
         return Err(JobError::key("data.fit_every", "found 0; expected 1 (fit all) or more"));
     }
     let mut eligible = 0;
     let fitted: Vec<bool> = ids
         .iter()
-        .map(|(id, geometry)| {
-            let near_mirror = degrees_from_mirror(geometry) < data.hold_out_near_mirror_deg;
+        .enumerate()
+        .map(|(place, (id, geometry))| {
+            let near_mirror = geometry.degrees_from_mirror() < data.hold_out_near_mirror_deg;
             let steep = geometry.theta_i_deg.max(geometry.theta_o_deg);
             let beyond = data.hold_out_beyond_deg.is_some_and(|limit| steep > limit);
-            let out = near_mirror || beyond || data.hold_out.iter().any(|name| name == id);
+            let every = data.hold_out_every.is_some_and(|every| place % every == 0);
+            let out = near_mirror || beyond || every || data.hold_out.iter().any(|name| name == id);
             if !out {
                 eligible += 1;
             }
@@ -150,13 +157,6 @@ fn fitted(data: &DataFile, ids: &[(&str, &Geometry)]) -> Result<Vec<bool>, JobEr
     } else {
         Err(JobError::key("data", "every reading is held out of the fit; loosen `hold_out` or its angles"))
     }
-}
-
-/// Angle between the viewer and the mirror direction of the light.
-fn degrees_from_mirror(geometry: &Geometry) -> f64 {
-    let incoming = geometry.incoming();
-    let mirror = crate::bsdf::Direction::new(-incoming.x, -incoming.y, incoming.z);
-    mirror.dot(&geometry.outgoing()).clamp(-1.0, 1.0).acos().to_degrees()
 }
 
 impl CheckedCase {
@@ -183,6 +183,10 @@ impl CheckedCase {
                 Comparison::Spectra(table, fitted, problem)
             }
             Table::Peaks(table) => {
+                if file.data.compare != Compared::Values {
+                    let problem = "peak wavelengths are compared as they are; leave this out";
+                    return Err(JobError::key("data.compare", problem));
+                }
                 let ids: Vec<_> = table.readings.iter().map(|r| (r.id.as_str(), &r.geometry)).collect();
                 let fitted = fitted(&file.data, &ids)?;
                 let seen = table.readings.iter().zip(&fitted).filter(|(_, fitted)| **fitted);
@@ -214,6 +218,7 @@ pub(super) fn spectra_problem(file: &JobFile, table: &GonioTable, fitted: &[bool
         make_model: &|wavelengths_nm| file.model.scattering(wavelengths_nm),
         quantity: table.quantity,
         spectra: &spectra,
+        compare: file.data.compare,
         instrument: &file.instrument,
         rings: cone_rings(file)?,
     })
@@ -324,19 +329,25 @@ pub(super) fn assign(
     gains: &Values,
 ) -> Result<Vec<Assignment>, JobError> {
     for name in typed.keys() {
-        index_of(declared, name).map_err(|problem| JobError::key(format!("parameters.\"{name}\""), problem))?;
+        places_of(declared, name).map_err(|problem| JobError::key(format!("parameters.\"{name}\""), problem))?;
     }
     declared
         .iter()
         .map(|parameter| {
             let key = || format!("parameters.\"{}\"", parameter.name);
-            match typed.get(&parameter.name) {
+            match said_of(typed, &parameter.name) {
                 Some(ParameterFile::Fixed(value)) => {
                     check_inside(parameter, *value).map_err(|problem| JobError::key(key(), problem))?;
                     Ok(Assignment { role: Role::Fixed(*value), prior: None })
                 }
                 Some(ParameterFile::Tied(expression)) => {
-                    let role = parse_tie(expression, |name| index_of(declared, name).ok());
+                    // What is tied in each channel is tied to the same channel of what has channels.
+                    let suffix =
+                        typed.keys().find_map(|name| channel_suffix(&parameter.name, name)).unwrap_or_default();
+                    let place = |name: &str| {
+                        index_of(declared, name).or_else(|_| index_of(declared, &format!("{name}{suffix}")))
+                    };
+                    let role = parse_tie(expression, |name| place(name).ok());
                     let role = role.map_err(|error| JobError::key(key(), error.to_string()))?;
                     Ok(Assignment { role, prior: None })
                 }

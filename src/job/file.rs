@@ -12,7 +12,7 @@ use crate::bsdf::{
     RoughPlasticDesign,
 };
 use crate::fit::Settings;
-use crate::measure::{Instrument, Quantity, TableLayout, ThinFilmLawDesign};
+use crate::measure::{Compared, Instrument, Quantity, TableLayout, ThinFilmLawDesign};
 
 /// A job: which data, which model, which parameters are free, and how to fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -74,9 +74,15 @@ pub struct DataFile {
     pub hold_out_near_mirror_deg: f64,
     /// Keep spectra whose inclination of light or viewer exceeds this out of the fit, degrees.
     pub hold_out_beyond_deg: Option<f64>,
+    /// Keep each spectrum out of the fit whose place in the table, counted from 0, is a multiple of this: 3 keeps the
+    /// first, the fourth, the seventh and so on to judge the fit by.
+    pub hold_out_every: Option<usize>,
     /// Of the spectra left, fit each so many and hold the others out.
     #[serde(default = "one")]
     pub fit_every: usize,
+    /// What of the readings the fit compares with the model's.
+    #[serde(default)]
+    pub compare: Compared,
 }
 
 fn one() -> usize {

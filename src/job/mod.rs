@@ -7,6 +7,7 @@ mod draft;
 mod error;
 mod file;
 mod film_peaks;
+mod held_out;
 mod json;
 mod load;
 mod model_note;
@@ -31,7 +32,8 @@ pub use file::{AlternativeFile, DataFile, FreeFile, JobFile, ModelFile, Paramete
 pub use load::Job;
 pub use models::{ModelEntry, models};
 pub use outcome::{
-    Case, CaseData, InputFile, ModelNote, Outcome, PeakFit, Prediction, SpectrumFit, Support, ThicknessOrder, Truth,
+    Case, CaseData, Comparison, ComparisonRow, HeldOut, InputFile, ModelNote, Outcome, PeakFit, Prediction,
+    SpectrumFit, Support, ThicknessOrder, Truth,
 };
 pub use run::run;
 pub use schema::schemas;

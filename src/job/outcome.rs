@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::fit::Fit;
-use crate::measure::{Geometry, Quantity};
+use crate::measure::{Compared, Geometry, Quantity};
 use crate::optics::{MaterialNote, Reference};
 
 /// The result of a job. Same inputs, same seed, same bytes.
@@ -28,6 +28,8 @@ pub struct Outcome {
     pub synthetic: Option<Truth>,
     /// One case, or several side by side: other models or other assumptions on the same data. The first is the main one.
     pub cases: Vec<Case>,
+    /// The cases judged by readings that none of them saw, where there are several and such readings.
+    pub comparison: Option<Comparison>,
     /// The job file as read, to repeat it.
     pub job_toml: String,
 }
@@ -69,10 +71,46 @@ pub struct Case {
     pub fit: Fit,
     /// Measured and fitted side by side.
     pub data: CaseData,
+    /// How well readings of spectra that the fit did not see are predicted, where there are such.
+    pub held_out: Option<HeldOut>,
     /// Whether the data support a film, where the model has one and there are incidences to leave out.
     pub support: Option<Support>,
     /// Thickness for each order of interference, where the data (peaks alone) do not give the order.
     pub orders: Vec<ThicknessOrder>,
+}
+
+/// Errors of prediction, model minus reading, at readings that the fit did not see.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct HeldOut {
+    /// Number of readings.
+    pub readings: usize,
+    /// Root mean square, in the unit of the readings.
+    pub rms: f64,
+    /// Root mean square of the difference of the cube roots, in the cube root of that unit.
+    pub rms_of_cube_roots: f64,
+}
+
+/// Several cases on the same readings.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Comparison {
+    /// Number of readings behind every `aicc`: the effective readings of the case that follows the fitted ones best.
+    pub effective_readings: f64,
+    /// One a case, in their order.
+    pub rows: Vec<ComparisonRow>,
+}
+
+/// One case among several.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ComparisonRow {
+    /// Name of the case.
+    pub case: String,
+    /// Number of free parameters.
+    pub free_parameters: usize,
+    /// Errors at the readings held out.
+    pub held_out: HeldOut,
+    /// Akaike's criterion with small-sample correction, on the fitted readings; None where the cases' likelihoods do not
+    /// compare (robust losses, readings that only some of them fit) or too few readings are left.
+    pub aicc: Option<f64>,
 }
 
 /// What the report's methods paragraph says of the model.
@@ -96,6 +134,8 @@ pub enum CaseData {
     Spectra {
         /// Meaning of the values.
         quantity: Quantity,
+        /// What of them the fit compared with the model's.
+        compare: Compared,
         /// One a geometry.
         spectra: Vec<SpectrumFit>,
     },

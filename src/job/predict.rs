@@ -2,7 +2,7 @@
 
 use super::case::{assign, first_gains, spectra_problem};
 use super::file::ParameterFile;
-use super::values::{Values, in_order, index_of, values_by_name};
+use super::values::{Values, in_order, places_of, values_by_name};
 use super::{JobError, JobFile};
 use crate::fit::{Control, ExpressionError, Fit, FitError, Residuals, first_values, fit, parse_tie};
 use crate::measure::{Calibration, GonioTable, Spectrum};
@@ -14,11 +14,11 @@ pub(super) fn solve(file: &JobFile, table: &GonioTable, control: &Control) -> Re
     let problem = spectra_problem(file, table, &vec![true; table.spectra.len()])?;
     let declared = problem.parameters();
     let mut typed = file.parameters.clone();
-    let index_of = |name: &str| index_of(declared, name).ok();
+    let first_of = |name: &str| places_of(declared, name).ok().map(|places| places[0]);
     typed.retain(|name, role| {
         let to_nothing =
-            |expression: &str| matches!(parse_tie(expression, index_of), Err(ExpressionError::UnknownName { .. }));
-        index_of(name).is_some() && !matches!(role, ParameterFile::Tied(expression) if to_nothing(expression))
+            |expression: &str| matches!(parse_tie(expression, first_of), Err(ExpressionError::UnknownName { .. }));
+        first_of(name).is_some() && !matches!(role, ParameterFile::Tied(expression) if to_nothing(expression))
     });
     let gains = first_gains(&problem, &table.spectra, &file.instrument);
     let assignments = assign(declared, &typed, &file.instrument, &gains)?;

@@ -4,6 +4,7 @@ use super::answer::{case_answer, job_answer};
 use super::case::{CheckedCase, Comparison, extent};
 use super::file::ModelFile;
 use super::film_peaks::FilmPeaks;
+use super::held_out::{comparison, held_out};
 use super::model_note::model_note;
 use super::outcome::{Case, CaseData, Outcome, PeakFit, Prediction, SpectrumFit, ThicknessOrder, Truth};
 use super::peaks::PeaksProblem;
@@ -17,7 +18,7 @@ use crate::measure::{Geometry, GonioTable, PeakReading, PeakTable};
 /// Fits every case of a job.
 pub fn run(job: &Job, control: &Control) -> Result<Outcome, JobError> {
     let (checked, inputs) = job.cases()?;
-    let cases = checked.iter().map(|case| run_case(case, control)).collect::<Result<_, _>>()?;
+    let cases: Vec<Case> = checked.iter().map(|case| run_case(case, control)).collect::<Result<_, _>>()?;
     let synthetic = job.file.data.synthetic.as_ref().map(|recipe| Truth {
         values: recipe.truth.clone(),
         noise: recipe.noise,
@@ -31,6 +32,7 @@ pub fn run(job: &Job, control: &Control) -> Result<Outcome, JobError> {
         about: job.file.about.clone(),
         inputs,
         synthetic,
+        comparison: comparison(&cases),
         cases,
         job_toml: job.text.clone(),
     };
@@ -60,6 +62,7 @@ fn run_case(case: &CheckedCase, control: &Control) -> Result<Case, JobError> {
         answer: String::new(),
         model: model_note(case)?,
         fit: found,
+        held_out: held_out(&data),
         data,
         support,
         orders,
@@ -79,7 +82,7 @@ fn spectra_data(file: &JobFile, table: &GonioTable, fitted: &[bool], fit: &Fit) 
         sigmas: spectrum.sigmas.clone(),
         model,
     });
-    Ok(CaseData::Spectra { quantity: table.quantity, spectra: spectra.collect() })
+    Ok(CaseData::Spectra { quantity: table.quantity, compare: file.data.compare, spectra: spectra.collect() })
 }
 
 /// Degrees between the points of the fitted curve of a peak plot.

@@ -27,9 +27,11 @@ pub fn simulate(job: &Job, set: &Values, noise: Noise) -> Result<String, JobErro
     }
     let mut case = job.cases()?.0.swap_remove(0);
     for (name, &value) in set {
-        let index = checked(case.residuals().parameters(), name, value)
+        let places = checked(case.residuals().parameters(), name, value)
             .map_err(|problem| JobError::Option { option: "--set", problem: format!("{name}: {problem}") })?;
-        case.assignments[index].role = Role::Fixed(value);
+        for index in places {
+            case.assignments[index].role = Role::Fixed(value);
+        }
     }
     let values = first_values(&case.assignments);
     match &case.comparison {

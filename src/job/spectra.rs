@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::JobError;
 use crate::bsdf::Model;
 use crate::fit::Residuals;
-use crate::measure::{Aperture, Band, Calibration, Instrument, Quantity, Spectrum};
+use crate::measure::{Aperture, Band, Calibration, Compared, Instrument, Quantity, Spectrum};
 use crate::parameter::{Parameter, Spread};
 
 /// Makes the model for a list of wavelengths.
@@ -21,6 +21,7 @@ pub(super) struct SpectraProblem {
     model_parameters: usize,
     /// Spectra of equal wavelengths share a model.
     groups: Vec<Group>,
+    compare: Compared,
     residual_count: usize,
     sigma_known: bool,
     coarse: Option<Box<SpectraProblem>>,
@@ -40,7 +41,8 @@ struct Item {
     offset: usize,
     /// First of this spectrum's rows.
     first_row: usize,
-    values: Vec<f64>,
+    /// What is compared with the model: the readings, or their cube roots.
+    targets: Vec<f64>,
     inverse_sigmas: Vec<f64>,
 }
 
@@ -52,6 +54,8 @@ pub(super) struct SpectraSetup<'a> {
     pub(super) quantity: Quantity,
     /// The spectra to compare with.
     pub(super) spectra: &'a [Spectrum],
+    /// What of readings and model is compared.
+    pub(super) compare: Compared,
     /// What stands between model and readings.
     pub(super) instrument: &'a Instrument,
     /// Rings of directions in an open cone.
@@ -98,10 +102,6 @@ impl SpectraProblem {
                 }
             };
             let gains = gain_count(setup.instrument.gain, setup.spectra.len());
-            let inverse_sigmas = match &spectrum.sigmas {
-                Some(sigmas) => sigmas.iter().map(|sigma| 1.0 / sigma).collect(),
-                None => vec![1.0; grid.len()],
-            };
             groups[position].items.push(Item {
                 aperture: Aperture::new(&spectrum.geometry, setup.instrument, setup.quantity, setup.rings),
                 gain: model_parameters + if setup.instrument.gain == Calibration::PerSpectrum { index } else { 0 },
@@ -109,14 +109,14 @@ impl SpectraProblem {
                     + gains
                     + if setup.instrument.offset == Calibration::PerSpectrum { index } else { 0 },
                 first_row: residual_count,
-                values: spectrum.values.clone(),
-                inverse_sigmas,
+                targets: spectrum.values.iter().map(|value| setup.compare.of(*value)).collect(),
+                inverse_sigmas: inverse_sigmas(spectrum, setup.compare)?,
             });
             residual_count += grid.len();
         }
         let mut touched = vec![0..residual_count; parameters.len()];
         for item in groups.iter().flat_map(|group| &group.items) {
-            let rows = item.first_row..item.first_row + item.values.len();
+            let rows = item.first_row..item.first_row + item.targets.len();
             if setup.instrument.gain == Calibration::PerSpectrum {
                 touched[item.gain] = rows.clone();
             }
@@ -125,7 +125,8 @@ impl SpectraProblem {
             }
         }
         let sigma_known = setup.spectra.iter().all(|spectrum| spectrum.sigmas.is_some());
-        Ok(Self { parameters, touched, model_parameters, groups, residual_count, sigma_known, coarse: None })
+        let compare = setup.compare;
+        Ok(Self { parameters, touched, model_parameters, groups, compare, residual_count, sigma_known, coarse: None })
     }
 
     /// The model's readings at these parameter values, one vector a spectrum, in the order of the table.
@@ -138,7 +139,7 @@ impl SpectraProblem {
         });
         let mut items: Vec<&Item> = self.groups.iter().flat_map(|group| &group.items).collect();
         items.sort_by_key(|item| item.first_row);
-        items.iter().map(|item| rows[item.first_row..item.first_row + item.values.len()].to_vec()).collect()
+        items.iter().map(|item| rows[item.first_row..item.first_row + item.targets.len()].to_vec()).collect()
     }
 
     /// Writes each spectrum's readings before gain and offset into its rows, then calls `finish` on them.
@@ -150,7 +151,7 @@ impl SpectraProblem {
             scratch.resize(group.model.channel_count(), 0.0);
             channels.resize(group.model.channel_count(), 0.0);
             for item in &group.items {
-                let readings = &mut rows[item.first_row..item.first_row + item.values.len()];
+                let readings = &mut rows[item.first_row..item.first_row + item.targets.len()];
                 if group.band.is_sharp() {
                     item.aperture.read(&*bsdf, &mut scratch, readings);
                 } else {
@@ -175,8 +176,8 @@ impl Residuals for SpectraProblem {
     fn evaluate(&self, values: &[f64], residuals: &mut [f64]) {
         self.for_each_item(values, residuals, |item, readings| {
             let (gain, offset) = (values[item.gain], values[item.offset]);
-            for ((reading, value), inverse_sigma) in readings.iter_mut().zip(&item.values).zip(&item.inverse_sigmas) {
-                *reading = (gain * *reading + offset - value) * inverse_sigma;
+            for ((reading, target), inverse_sigma) in readings.iter_mut().zip(&item.targets).zip(&item.inverse_sigmas) {
+                *reading = (self.compare.of(gain * *reading + offset) - target) * inverse_sigma;
             }
         });
     }
@@ -192,6 +193,22 @@ impl Residuals for SpectraProblem {
     fn sigma_known(&self) -> bool {
         self.sigma_known
     }
+}
+
+/// 1/σ of what is compared, or 1 where no σ is known.
+fn inverse_sigmas(spectrum: &Spectrum, compare: Compared) -> Result<Vec<f64>, JobError> {
+    let Some(sigmas) = &spectrum.sigmas else { return Ok(vec![1.0; spectrum.values.len()]) };
+    let inverse = |(value, sigma): (&f64, &f64)| {
+        let compared = compare.sigma_of(*value, *sigma);
+        compared.is_finite().then_some(1.0 / compared).ok_or_else(|| {
+            let problem = format!(
+                "spectrum `{}` reads 0, and the cube root of 0 has no σ; leave `sigma` out, or compare values",
+                spectrum.id
+            );
+            JobError::key("data.compare", problem)
+        })
+    };
+    spectrum.values.iter().zip(sigmas).map(inverse).collect()
 }
 
 fn same_names(a: &[Parameter], b: &[Parameter]) -> bool {

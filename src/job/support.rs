@@ -122,7 +122,9 @@ fn prediction_error(file: &JobFile, left_out: &GonioTable, values: &Values) -> R
     let (mut squares, mut scale) = (0.0, 0.0);
     for (spectrum, model) in left_out.spectra.iter().zip(&predicted) {
         for (index, (m, y)) in model.iter().zip(&spectrum.values).enumerate() {
-            let sigma = known_sigma(spectrum, index);
+            let compare = file.data.compare;
+            let sigma = known_sigma(spectrum, index).map(|sigma| compare.sigma_of(*y, sigma));
+            let (m, y) = (compare.of(*m), compare.of(*y));
             squares += ((m - y) / sigma.unwrap_or(1.0)).powi(2);
             scale += if sigma.is_some() { 1.0 } else { y * y };
         }

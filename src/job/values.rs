@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use crate::bsdf::channel_suffix;
 use crate::fit::Fit;
 use crate::nearest::suggestion;
 use crate::parameter::Parameter;
@@ -16,7 +17,23 @@ pub(super) fn values_by_name(fit: &Fit) -> Values {
 
 /// One value for each declared parameter, in their order: the default of those that are not named.
 pub(super) fn in_order(declared: &[Parameter], values: &Values) -> Vec<f64> {
-    declared.iter().map(|parameter| values.get(&parameter.name).copied().unwrap_or(parameter.default)).collect()
+    declared.iter().map(|parameter| *said_of(values, &parameter.name).unwrap_or(&parameter.default)).collect()
+}
+
+/// What is said of a parameter: under its own name, or once for all channels (`eta` of `eta_r`). Its own name goes first.
+pub(super) fn said_of<'a, T>(said: &'a BTreeMap<String, T>, name: &str) -> Option<&'a T> {
+    let shared = || said.iter().find(|(shared, _)| channel_suffix(name, shared).is_some()).map(|(_, value)| value);
+    said.get(name).or_else(shared)
+}
+
+/// Indices of the declared parameters that a name stands for: the one that has it, or all channels of it.
+pub(super) fn places_of(declared: &[Parameter], name: &str) -> Result<Vec<usize>, String> {
+    if let Some(index) = declared.iter().position(|parameter| parameter.name == name) {
+        return Ok(vec![index]);
+    }
+    let is_channel = |(_, parameter): &(usize, &Parameter)| channel_suffix(&parameter.name, name).is_some();
+    let channels: Vec<usize> = declared.iter().enumerate().filter(is_channel).map(|(index, _)| index).collect();
+    if channels.is_empty() { index_of(declared, name).map(|index| vec![index]) } else { Ok(channels) }
 }
 
 /// Index of the declared parameter of this name, or a sentence that lists those there are.
@@ -37,9 +54,11 @@ pub(super) fn check_inside(parameter: &Parameter, value: f64) -> Result<(), Stri
     Err(format!("found {value}; expected a value from {} to {}{unit}", parameter.lower, parameter.upper))
 }
 
-/// Index of the declared parameter of this name, whose value this may be.
-pub(super) fn checked(declared: &[Parameter], name: &str, value: f64) -> Result<usize, String> {
-    let index = index_of(declared, name)?;
-    check_inside(&declared[index], value)?;
-    Ok(index)
+/// Indices of the declared parameters that this name stands for, whose value this may be.
+pub(super) fn checked(declared: &[Parameter], name: &str, value: f64) -> Result<Vec<usize>, String> {
+    let places = places_of(declared, name)?;
+    for &index in &places {
+        check_inside(&declared[index], value)?;
+    }
+    Ok(places)
 }

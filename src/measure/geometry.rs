@@ -35,6 +35,13 @@ impl Geometry {
     pub fn outgoing(&self) -> Direction {
         direction(self.theta_o_deg, self.phi_o_deg)
     }
+
+    /// Angle between the viewer and the mirror direction of the light, degrees.
+    pub fn degrees_from_mirror(&self) -> f64 {
+        let incoming = self.incoming();
+        let mirror = Direction::new(-incoming.x, -incoming.y, incoming.z);
+        mirror.dot(&self.outgoing()).clamp(-1.0, 1.0).acos().to_degrees()
+    }
 }
 
 fn direction(theta_deg: f64, phi_deg: f64) -> Direction {

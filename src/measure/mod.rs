@@ -1,6 +1,7 @@
 //! Measurements: the geometry of a reading, tables of readings, the instrument that took them, and colour.
 
 pub mod colour;
+mod compared;
 mod error;
 mod geometry;
 mod guess;
@@ -12,6 +13,7 @@ mod table;
 mod text;
 mod thin_film_law;
 
+pub use compared::Compared;
 pub use error::{Place, TableError, TableProblem};
 pub use geometry::Geometry;
 pub use guess::{Certainty, Guess, GuessNote, guess_layout};

@@ -2,7 +2,8 @@
 
 use super::tables::with_unit;
 use crate::fit::{Fit, Loss, SigmaSource, Solver};
-use crate::job::{ModelNote, Outcome, Reference};
+use crate::job::{CaseData, ModelNote, Outcome, Reference};
+use crate::measure::Compared;
 
 /// Paragraphs and the works that they cite by number.
 pub(crate) struct Methods {
@@ -83,6 +84,16 @@ const HUBER: Work = (
     "Huber 1964",
     "Huber P. J. 1964. Robust estimation of a location parameter. The Annals of Mathematical Statistics 35, 73–101.",
 );
+const CARROLL: Work = (
+    "Carroll and Ruppert 1984",
+    "Carroll R. J., Ruppert D. 1984. Power transformations when fitting theoretical models to data. Journal of the American \
+     Statistical Association 79, 321–328.",
+);
+const FORES: Work = (
+    "Fores et al. 2012",
+    "Fores A., Ferwerda J., Gu J. 2012. Toward a perceptually based metric for BRDF modeling. Color and Imaging Conference 20, \
+     142–148.",
+);
 const SHARMA: Work = (
     "Sharma et al. 2005",
     "Sharma G., Wu W., Dalal E. N. 2005. The CIEDE2000 color-difference formula: implementation notes, supplementary test \
@@ -105,7 +116,15 @@ pub(crate) fn of(outcome: &Outcome, has_swatches: bool) -> Methods {
         paragraphs.push(Paragraph { heading, text: model_text(note, &mut bibliography) });
     }
     if let Some(case) = outcome.cases.first() {
-        paragraphs.push(Paragraph { heading: "Fit".to_owned(), text: fit_text(&case.fit, &mut bibliography) });
+        let mut text = fit_text(&case.fit, &mut bibliography);
+        if matches!(case.data, CaseData::Spectra { compare: Compared::CubeRoots, .. }) {
+            let (carroll, fores) = (bibliography.cite(CARROLL), bibliography.cite(FORES));
+            text += &format!(
+                " Cube roots of model and readings were compared {carroll}, of which observers' judgements of BRDFs follow \
+                 best {fores}."
+            );
+        }
+        paragraphs.push(Paragraph { heading: "Fit".to_owned(), text });
         paragraphs.push(Paragraph {
             heading: "Uncertainty and rivals".to_owned(),
             text: uncertainty_text(&case.fit, &mut bibliography),

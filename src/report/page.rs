@@ -8,7 +8,7 @@ use super::swatch::{self, Swatches};
 use super::tables::{self, Minima, OrderRow, ParameterRow};
 use super::{Chapter, Picture, ReportError, readings};
 use crate::fit::Settings;
-use crate::job::{Outcome, Support};
+use crate::job::{Comparison, Outcome, Support};
 use crate::measure::colour::Swatch;
 use crate::number::{count, significant, to_place};
 
@@ -21,7 +21,12 @@ pub(crate) fn html(outcome: &Outcome, chapters: &[Chapter]) -> Result<String, Re
         outcome,
         synthetic: outcome.synthetic.as_ref().map(tables::truth_sentence),
         several: cases.len() > 1,
-        comparison: chapters.iter().enumerate().map(|(index, chapter)| ComparisonRow::new(index, chapter)).collect(),
+        comparison: chapters
+            .iter()
+            .enumerate()
+            .map(|(index, chapter)| ComparisonRow::new(index, chapter, outcome.comparison.as_ref()))
+            .collect(),
+        judged: outcome.comparison.as_ref().map(tables::comparison_sentence),
         cases,
         methods,
         strong_threshold: tables::STRONG_CORRELATION,
@@ -38,6 +43,8 @@ struct Page<'a> {
     synthetic: Option<String>,
     several: bool,
     comparison: Vec<ComparisonRow>,
+    /// What the table of cases says of the readings held out, where there are any.
+    judged: Option<String>,
     cases: Vec<CaseView<'a>>,
     methods: Methods,
     strong_threshold: f64,
@@ -53,10 +60,12 @@ struct ComparisonRow {
     text: String,
     parameters: Vec<String>,
     rms: String,
+    /// Free parameters, rms held out, the same of cube roots, `AICc`, where the cases are judged by what they did not see.
+    judged: Option<[String; 4]>,
 }
 
 impl ComparisonRow {
-    fn new(index: usize, chapter: &Chapter) -> Self {
+    fn new(index: usize, chapter: &Chapter, comparison: Option<&Comparison>) -> Self {
         let case = chapter.case;
         Self {
             anchor: anchor(index),
@@ -64,6 +73,7 @@ impl ComparisonRow {
             text: case.text.clone(),
             parameters: tables::main_parameters(case),
             rms: readings::rms(case).unwrap_or_default(),
+            judged: comparison.and_then(|comparison| tables::judged(comparison, index)),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! One reading at a time: what a case's data hold in parallel lists.
 
 use crate::job::{Case, CaseData, SpectrumFit};
-use crate::measure::Quantity;
+use crate::measure::{Compared, Quantity};
 
 /// One reading of a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +28,14 @@ pub(crate) fn of(spectrum: &SpectrumFit) -> impl Iterator<Item = Reading> {
     })
 }
 
+/// Whether a table has curves over wavelength to draw, and not only a few channels.
+pub(crate) fn are_spectra(spectra: &[SpectrumFit]) -> bool {
+    spectra.iter().any(|spectrum| spectrum.wavelengths_nm.len() > FEW_CHANNELS)
+}
+
+/// Most channels that are drawn as channels: RGB has three.
+pub(crate) const FEW_CHANNELS: usize = 3;
+
 /// Name and unit of what was measured, as an axis says it.
 pub(crate) fn quantity_label(quantity: Quantity) -> &'static str {
     match quantity {
@@ -45,7 +53,7 @@ pub(crate) fn quantity_note(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Units of a case's readings.
+/// Units of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Units {
     /// As it follows a number, its space included.
@@ -58,6 +66,19 @@ pub(crate) struct Units {
 
 /// Units of what a case's fit compares.
 pub(crate) fn units(case: &Case) -> Units {
+    match &case.data {
+        CaseData::Spectra { compare: Compared::CubeRoots, quantity, .. } => match quantity {
+            Quantity::Brdf | Quantity::BsdfCos => {
+                Units { following: "/sr^⅓", name: "cube roots, 1/sr^⅓", squared: "1/sr^⅔" }
+            }
+            Quantity::Reflectance => Units { following: "", name: "cube roots", squared: "" },
+        },
+        _ => reading_units(case),
+    }
+}
+
+/// Units of a case's readings.
+pub(crate) fn reading_units(case: &Case) -> Units {
     match &case.data {
         CaseData::Spectra { quantity: Quantity::Brdf | Quantity::BsdfCos, .. } => {
             Units { following: "/sr", name: "1/sr", squared: "1/sr²" }
@@ -87,5 +108,5 @@ pub(crate) fn rms(case: &Case) -> Option<String> {
         return None;
     }
     let mean = residuals.iter().map(|r| r * r).sum::<f64>() / super::chart::length(residuals.len());
-    Some(format!("{}{}", crate::number::significant(mean.sqrt(), 3), units(case).following))
+    Some(format!("{}{}", crate::number::significant(mean.sqrt(), 3), reading_units(case).following))
 }

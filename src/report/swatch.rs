@@ -33,7 +33,11 @@ pub(crate) struct Swatches {
 /// Where the brightest measured one outshines the white standard, as glossy samples do in mirror position, all are
 /// darkened by one factor so that it just does not: a colour beyond white can neither be shown nor compared.
 pub(crate) fn of(case: &Case) -> Option<Swatches> {
-    let CaseData::Spectra { quantity, spectra } = &case.data else { return None };
+    let CaseData::Spectra { quantity, spectra, .. } = &case.data else { return None };
+    // Two wavelengths have no colour.
+    if spectra.iter().all(|spectrum| spectrum.wavelengths_nm.len() < 3) {
+        return None;
+    }
     let selection = angles::representative(spectra);
     let names = angles::names(spectra.iter().map(|s| &s.geometry));
     let chosen: Vec<(&String, Factors)> =

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::readings::{self, labelled};
 use crate::fit::{Bound, Estimate, Fit, Goodness, Loss, Minimum, RIVAL_SHARE, SigmaSource, StopReason};
-use crate::job::{Case, ThicknessOrder, Truth};
+use crate::job::{Case, Comparison, ThicknessOrder, Truth};
 use crate::number::{beside_error, count, percent, plain, significant, with_error};
 
 /// Correlations of at least this size are listed.
@@ -113,6 +113,26 @@ pub(crate) fn main_parameters(case: &Case) -> Vec<String> {
             false => format!("{} = {}", e.symbol, with_unit(&with_error(e.value, e.standard_error), &e.unit)),
         })
         .collect()
+}
+
+/// Free parameters, rms of what was held out, that of cube roots, and `AICc` of one case among several.
+pub(crate) fn judged(comparison: &Comparison, index: usize) -> Option<[String; 4]> {
+    let row = comparison.rows.get(index)?;
+    Some([
+        row.free_parameters.to_string(),
+        significant(row.held_out.rms, 3),
+        significant(row.held_out.rms_of_cube_roots, 3),
+        row.aicc.map_or_else(|| "–".to_owned(), |aicc| crate::number::to_place(aicc, -1)),
+    ])
+}
+
+/// What the columns of [`judged`] mean.
+pub(crate) fn comparison_sentence(comparison: &Comparison) -> String {
+    let held_out = comparison.rows.first().map_or(0, |row| row.held_out.readings);
+    format!(
+        "Held out: root mean square of model − measured at the {held_out} readings that no case was fitted to, and the same of          cube roots, in which bright readings do not drown dark ones. AICc is on the readings fitted, as if {} of them were          independent (as for the case that follows them best); lower is better, and differences alone mean something.",
+        significant(comparison.effective_readings, 3)
+    )
 }
 
 /// The table of minima.

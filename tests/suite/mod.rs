@@ -12,6 +12,7 @@ mod directions;
 mod engine;
 mod feather;
 mod filmed_cylinder;
+mod four_angles;
 mod granier;
 mod jacobian;
 mod jobs;

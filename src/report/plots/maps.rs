@@ -13,7 +13,10 @@ const MOST_COLUMNS: usize = 100;
 const MOST_OF_ALL: f64 = 0.98;
 
 pub(super) fn draw(case: &Case) -> Vec<Figure> {
-    let CaseData::Spectra { quantity, spectra } = &case.data else { return Vec::new() };
+    let CaseData::Spectra { quantity, spectra, .. } = &case.data else { return Vec::new() };
+    if !readings::are_spectra(spectra) {
+        return Vec::new();
+    }
     // What the fit did not see is often what would outshine all the rest: gloss, grazing angles.
     let fitted_spectra: Vec<SpectrumFit> = spectra.iter().filter(|s| s.fitted).cloned().collect();
     let left_out = spectra.len() - fitted_spectra.len();

@@ -6,6 +6,7 @@ mod maps;
 mod peaks;
 mod predicted;
 mod profile;
+mod scatter;
 mod spectra;
 mod support;
 
@@ -38,6 +39,7 @@ pub(crate) struct Plot {
 /// Every plot, in the order of the page.
 pub(crate) const ALL: &[Plot] = &[
     Plot { place: Place::Data, draw: spectra::draw },
+    Plot { place: Place::Data, draw: scatter::draw },
     Plot { place: Place::Data, draw: maps::draw },
     Plot { place: Place::Data, draw: peaks::draw },
     Plot { place: Place::Data, draw: predicted::draw },

@@ -13,8 +13,8 @@ const FITTED: Look = Look::Line { colour: BLACK, width: 1.3, dashed: false };
 const PREDICTED: Look = Look::Line { colour: VERMILION, width: 1.5, dashed: true };
 
 pub(super) fn draw(case: &Case) -> Vec<Figure> {
-    let CaseData::Spectra { quantity, spectra } = &case.data else { return Vec::new() };
-    if spectra.is_empty() {
+    let CaseData::Spectra { quantity, spectra, .. } = &case.data else { return Vec::new() };
+    if !readings::are_spectra(spectra) {
         return Vec::new();
     }
     let selection = angles::representative(spectra);

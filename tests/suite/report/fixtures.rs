@@ -10,7 +10,7 @@ use barbule::job::{
     Case, CaseData, InputFile, MaterialNote, ModelNote, Outcome, PeakFit, Prediction, Reference, SpectrumFit, Support,
     ThicknessOrder, Truth,
 };
-use barbule::measure::{Geometry, Quantity};
+use barbule::measure::{Compared, Geometry, Quantity};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -162,6 +162,7 @@ fn outcome(name: &str, title: &str, answer: &str, cases: Vec<Case>) -> Outcome {
         about: "A made-up fringe, to try the report.".into(),
         inputs: vec![InputFile { name: "table.csv".into(), sha256: "9f".repeat(32), bytes: 131_072 }],
         synthetic: None,
+        comparison: None,
         cases,
         job_toml: "title = \"A film\"\n\n[[layers]]\nmaterial = \"keratin\"   # <outermost> & first\nthickness_nm = { start = 300.0 }\n".into(),
     }
@@ -214,7 +215,12 @@ pub(super) fn film() -> Outcome {
         answer: "The film is 332.4 ± 1.2 nm thick.".into(),
         model: model_note(),
         fit: fit_of_film(SigmaSource::Estimated),
-        data: CaseData::Spectra { quantity: Quantity::Reflectance, spectra: spectra.collect() },
+        data: CaseData::Spectra {
+            quantity: Quantity::Reflectance,
+            compare: Compared::Values,
+            spectra: spectra.collect(),
+        },
+        held_out: None,
         support: Some(support),
         orders: Vec::new(),
     };
@@ -274,7 +280,8 @@ pub(super) fn paint() -> Outcome {
         answer: "The flake's film is 332.4 ± 1.2 nm thick.".into(),
         model: model_note(),
         fit: fit_of_film(SigmaSource::Known),
-        data: CaseData::Spectra { quantity: Quantity::Brdf, spectra },
+        data: CaseData::Spectra { quantity: Quantity::Brdf, compare: Compared::Values, spectra },
+        held_out: None,
         support: None,
         orders: Vec::new(),
     };
@@ -350,6 +357,7 @@ pub(super) fn peaks() -> Outcome {
             spectra: Vec::new(),
             curve: (0..=90).map(|t| (f64::from(t), law(f64::from(t)))).collect(),
         },
+        held_out: None,
         support: None,
         orders: (1..=5)
             .map(|order| {
@@ -423,7 +431,7 @@ pub(super) fn awkward() -> Outcome {
     }
     let mut empty = case.clone();
     empty.name = "nothing".into();
-    empty.data = CaseData::Spectra { quantity: Quantity::BsdfCos, spectra: Vec::new() };
+    empty.data = CaseData::Spectra { quantity: Quantity::BsdfCos, compare: Compared::Values, spectra: Vec::new() };
     empty.support = None;
     empty.fit.estimates.clear();
     empty.fit.minima.clear();
