@@ -1,7 +1,7 @@
 //! Barbule fits a physical model of how a feather looks to measurements of real feathers, and shows how good the fit is.
 //!
-//! The rooms, from the bottom up: [`optics`] and [`pigment`], [`bsdf`], [`measure`], [`job`], [`report`]; each may use what
-//! stands before it. [`fit`] stands beside them on [`parameter`] alone and knows nothing of feathers; `job` is where a
+//! The rooms, from the bottom up: [`optics`] and [`pigment`], [`bsdf`], [`measure`], [`render`], [`job`], [`scene`],
+//! [`report`]; each may use what stands before it. [`fit`] stands beside them on [`parameter`] alone and knows nothing of feathers; `job` is where a
 //! measurement, a model and the engine meet.
 
 pub mod bsdf;
@@ -13,4 +13,6 @@ mod number;
 pub mod optics;
 pub mod parameter;
 pub mod pigment;
+pub mod render;
 pub mod report;
+pub mod scene;

@@ -5,6 +5,7 @@ mod fit;
 mod models;
 mod new;
 mod output;
+mod render;
 mod schema;
 mod simulate;
 
@@ -30,6 +31,7 @@ enum Command {
     Fit(fit::Fit),
     Simulate(simulate::Simulate),
     Check(check::Check),
+    Render(render::Render),
     Models(models::Models),
     Schema(schema::Schema),
 }
@@ -41,6 +43,8 @@ enum Ending {
     Done,
     /// Exit code 1: everything was read, but the fit failed.
     FitFailed,
+    /// Exit code 130, as shells count it: the user stopped it.
+    Interrupted,
 }
 
 /// Runs the command line: 0 done, 1 the fit failed, 2 a mistake that the user can mend.
@@ -50,12 +54,14 @@ pub(crate) fn main() -> ExitCode {
         Command::Fit(command) => command.run(),
         Command::Simulate(command) => command.run(),
         Command::Check(command) => command.run(),
+        Command::Render(command) => command.run(),
         Command::Models(command) => command.run(),
         Command::Schema(command) => command.run(),
     };
     match ending {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::FitFailed) => ExitCode::from(1),
+        Ok(Ending::Interrupted) => ExitCode::from(130),
         // A reader that closes its end of a pipe has what it wanted.
         Err(error) if output::is_broken_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {

@@ -39,4 +39,6 @@ pub use run::run;
 pub use schema::schemas;
 pub use simulate::{Noise, simulate};
 
+pub(crate) use syntax::{in_words, model_slip, written};
+
 pub use crate::optics::{MaterialNote, Reference};

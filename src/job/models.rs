@@ -16,7 +16,7 @@ use crate::parameter::Parameter;
 
 impl ModelFile {
     /// The scattering model at these wavelengths, nm.
-    pub(super) fn scattering(&self, wavelengths_nm: &[f64]) -> Result<Box<dyn Model>, JobError> {
+    pub(crate) fn scattering(&self, wavelengths_nm: &[f64]) -> Result<Box<dyn Model>, JobError> {
         Ok(match self {
             Self::CoatedBase(design) => Box::new(CoatedBase::new(design, wavelengths_nm)?),
             Self::Microfacet(design) => Box::new(MicrofacetInterface::new(design, wavelengths_nm)?),

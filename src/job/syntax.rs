@@ -91,8 +91,13 @@ fn in_model(job: &toml::Value, slip: &Slip) -> Option<Slip> {
     })?;
     let mut model = slip.keys.last().filter(|last| *last == "model").and(model.as_table())?.clone();
     let kind = model.remove("kind")?;
-    let model = toml::Value::Table(model);
-    let mut inner = match kind.as_str()? {
+    let (keys, message) = model_slip(kind.as_str()?, toml::Value::Table(model))?;
+    Some(Slip { keys: slip.keys.iter().cloned().chain(keys).collect(), message })
+}
+
+/// The first slip in a model of this kind, whose other keys are given: its keys below the model, and serde's words.
+pub(crate) fn model_slip(kind: &str, model: toml::Value) -> Option<(Vec<String>, String)> {
+    let slip = match kind {
         "coated-base" => deserialise::<Design>(model).err()?,
         "microfacet" => deserialise::<MicrofacetDesign>(model).err()?,
         "rough-plastic" => deserialise::<RoughPlasticDesign>(model).err()?,
@@ -105,12 +110,11 @@ fn in_model(job: &toml::Value, slip: &Slip) -> Option<Slip> {
         "thin-film-law" => deserialise::<ThinFilmLawDesign>(model).err()?,
         _ => return None,
     };
-    inner.keys.splice(0..0, slip.keys.iter().cloned());
-    Some(inner)
+    Some((slip.keys, slip.message))
 }
 
 /// Nested keys as a person types them.
-fn written(keys: &[String]) -> String {
+pub(crate) fn written(keys: &[String]) -> String {
     let plain = |key: &str| key.chars().all(|letter| letter.is_ascii_alphanumeric() || "_-".contains(letter));
     let mut text = String::new();
     for key in keys {
@@ -124,7 +128,7 @@ fn written(keys: &[String]) -> String {
 }
 
 /// Serde's message in words for people who know no serde. What it does not know it leaves as it is.
-fn in_words(message: &str) -> String {
+pub(crate) fn in_words(message: &str) -> String {
     let message = message.trim();
     let names: Vec<String> = message.split('`').skip(1).step_by(2).map(str::to_owned).collect();
     let known = |names: &[String]| names.join(", ");

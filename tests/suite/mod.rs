@@ -23,6 +23,7 @@ mod oracle;
 mod order;
 mod paints;
 mod pigment;
+mod render;
 mod report;
 mod rough_plastic;
 mod sampling;

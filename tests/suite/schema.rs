@@ -29,7 +29,7 @@ fn job_as_json(text: &str) -> Value {
 
 #[test]
 fn the_schemas_are_those_of_this_version() {
-    for (name, expected) in barbule::job::schemas() {
+    for (name, expected) in barbule::job::schemas().into_iter().chain(barbule::scene::schemas()) {
         let found = fs::read_to_string(shipped("data-schema").join(name)).unwrap_or_default();
         // Git may have turned the line ends.
         assert!(
@@ -45,11 +45,29 @@ fn every_shipped_job_agrees_with_the_schema() {
     let mut jobs = 0;
     for folder in fs::read_dir(shipped("fits")).unwrap() {
         let path = folder.unwrap().path().join("job.toml");
+        if !path.exists() {
+            continue;
+        }
         let text = fs::read_to_string(&path).unwrap();
         assert_agrees(&schema, &path.display().to_string(), &job_as_json(&text));
         jobs += 1;
     }
     assert!(jobs > 0);
+}
+
+#[test]
+fn every_shipped_scene_agrees_with_the_schema() {
+    let schema = schema("scene.schema.json");
+    let mut scenes = 0;
+    for folder in fs::read_dir(shipped("fits")).unwrap() {
+        let path = folder.unwrap().path().join("scene.json");
+        if path.exists() {
+            let scene = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+            assert_agrees(&schema, &path.display().to_string(), &scene);
+            scenes += 1;
+        }
+    }
+    assert!(scenes > 0);
 }
 
 #[test]

@@ -115,6 +115,11 @@ pub fn encode(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
+/// A screen's code as linear light, the inverse of [`encode`]. Codes outside 0 to 1 stay outside.
+pub fn decode(code: f64) -> f64 {
+    if code <= 12.92 * 0.003_130_8 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
+}
+
 fn weigh(reflectance: impl Fn(f64) -> f64) -> Xyz {
     let (mut sum, mut white_y) = ([0.0; 3], 0.0);
     for (index, [x_bar, y_bar, z_bar, power]) in OBSERVER_AND_D65.into_iter().enumerate() {

@@ -1,0 +1,223 @@
+//! The scene as the integrator sees it: shapes, what lies on them, lights, and the camera.
+
+use super::camera::Camera;
+use super::light::Light;
+use super::material::{BoundMaterial, Material};
+use super::mesh::{Mesh, MeshPoint};
+use super::ray::{Frame, Hit, Ray, Vector};
+use super::shape::{Rectangle, Sphere};
+
+/// What lies on a shape.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Surface {
+    /// A material, by its number.
+    Material(usize),
+    /// A light, by its number. It takes in all that falls on it.
+    Light(usize),
+}
+
+/// A scene that can be rendered.
+#[derive(Debug)]
+pub struct Scene {
+    pub(super) camera: Camera,
+    materials: Vec<Material>,
+    spheres: Vec<(Sphere, usize)>,
+    rectangles: Vec<(Rectangle, usize)>,
+    meshes: Vec<(Mesh, usize)>,
+    pub(super) surfaces: Vec<Surface>,
+    pub(super) lights: Vec<Light>,
+}
+
+/// Where a ray first meets something.
+#[derive(Debug, Clone, Copy)]
+enum Met {
+    Sphere(usize),
+    Rectangle(usize, [f64; 2]),
+    Mesh(usize, MeshPoint),
+}
+
+impl Scene {
+    /// An empty scene with these materials, which its shapes name by number.
+    pub fn new(camera: Camera, materials: Vec<Material>) -> Self {
+        Self {
+            camera,
+            materials,
+            spheres: Vec::new(),
+            rectangles: Vec::new(),
+            meshes: Vec::new(),
+            surfaces: Vec::new(),
+            lights: Vec::new(),
+        }
+    }
+
+    /// Where the camera stands.
+    pub fn camera_position(&self) -> Vector {
+        self.camera.position()
+    }
+
+    /// Adds a sphere of a material.
+    #[must_use]
+    pub fn with_sphere(mut self, sphere: Sphere, material: usize) -> Self {
+        let surface = self.add_surface(Surface::Material(material));
+        self.spheres.push((sphere, surface));
+        self
+    }
+
+    /// Adds a rectangle of a material.
+    #[must_use]
+    pub fn with_rectangle(mut self, rectangle: Rectangle, material: usize) -> Self {
+        let surface = self.add_surface(Surface::Material(material));
+        self.rectangles.push((rectangle, surface));
+        self
+    }
+
+    /// Adds a mesh of a material.
+    #[must_use]
+    pub fn with_mesh(mut self, mesh: Mesh, material: usize) -> Self {
+        let surface = self.add_surface(Surface::Material(material));
+        self.meshes.push((mesh, surface));
+        self
+    }
+
+    /// Adds a light, and its shape where it has one.
+    #[must_use]
+    pub fn with_light(mut self, light: Light) -> Self {
+        let number = self.lights.len();
+        match &light {
+            Light::Rectangle { shape, .. } => {
+                let surface = self.add_surface(Surface::Light(number));
+                self.rectangles.push((*shape, surface));
+            }
+            Light::Sphere { shape, .. } => {
+                let surface = self.add_surface(Surface::Light(number));
+                self.spheres.push((*shape, surface));
+            }
+            Light::Point { .. } | Light::Directional { .. } | Light::Constant { .. } | Light::Map(_) => {}
+        }
+        self.lights.push(light);
+        self
+    }
+
+    fn add_surface(&mut self, surface: Surface) -> usize {
+        if let Surface::Material(material) = surface {
+            assert!(material < self.materials.len(), "there is no material number {material}");
+        }
+        self.surfaces.push(surface);
+        self.surfaces.len() - 1
+    }
+
+    pub(super) fn bind_materials(&self) -> Vec<BoundMaterial<'_>> {
+        self.materials.iter().map(Material::bind).collect()
+    }
+
+    /// Radius of a sphere about the centre of its bounds that holds all shapes, mm; 1 without any.
+    pub(super) fn radius(&self) -> f64 {
+        let mut low = Vector::repeat(f64::INFINITY);
+        let mut high = -low;
+        let mut grow = |points: &[Vector]| {
+            for point in points {
+                (low, high) = (low.inf(point), high.sup(point));
+            }
+        };
+        for (sphere, _) in &self.spheres {
+            grow(&[sphere.centre.add_scalar(-sphere.radius), sphere.centre.add_scalar(sphere.radius)]);
+        }
+        for (rectangle, _) in &self.rectangles {
+            grow(&rectangle.corners());
+        }
+        for (mesh, _) in &self.meshes {
+            grow(&mesh.bounds());
+        }
+        let radius = 0.5 * (high - low).norm();
+        if radius.is_finite() { radius } else { 1.0 }
+    }
+
+    /// The first thing that the ray meets beyond `nearest`.
+    #[inline]
+    pub(super) fn first_hit(&self, ray: &Ray, nearest: f64) -> Option<Hit> {
+        let (mut farthest, mut met) = (f64::INFINITY, None);
+        for (number, (rectangle, _)) in self.rectangles.iter().enumerate() {
+            if let Some((distance, uv)) = rectangle.distance(ray, nearest, farthest) {
+                (farthest, met) = (distance, Some(Met::Rectangle(number, uv)));
+            }
+        }
+        for (number, (sphere, _)) in self.spheres.iter().enumerate() {
+            if let Some(distance) = sphere.distance(ray, nearest, farthest) {
+                (farthest, met) = (distance, Some(Met::Sphere(number)));
+            }
+        }
+        for (number, (mesh, _)) in self.meshes.iter().enumerate() {
+            if let Some(point) = mesh.nearest(ray, nearest, farthest) {
+                (farthest, met) = (point.distance, Some(Met::Mesh(number, point)));
+            }
+        }
+        Some(match met? {
+            Met::Rectangle(number, uv) => {
+                let (rectangle, surface) = &self.rectangles[number];
+                rectangle.hit(farthest, uv, *surface)
+            }
+            Met::Sphere(number) => {
+                let (sphere, surface) = &self.spheres[number];
+                sphere.hit(ray, farthest, *surface)
+            }
+            Met::Mesh(number, point) => {
+                let (mesh, surface) = &self.meshes[number];
+                mesh.hit(ray, point, *surface)
+            }
+        })
+    }
+
+    /// Share of light that passes along a ray between two distances: 0 behind anything, except where a material lets
+    /// light straight through.
+    #[inline]
+    pub(super) fn passed(&self, materials: &[BoundMaterial<'_>], ray: &Ray, nearest: f64, farthest: f64) -> f64 {
+        let mut share = 1.0;
+        for (rectangle, surface) in &self.rectangles {
+            if let Some((distance, uv)) = rectangle.distance(ray, nearest, farthest) {
+                share *= self.share_through(materials, *surface, ray, || rectangle.hit(distance, uv, *surface));
+                if share == 0.0 {
+                    return 0.0;
+                }
+            }
+        }
+        for (sphere, surface) in &self.spheres {
+            // Both sides of it.
+            let mut from = nearest;
+            while let Some(distance) = sphere.distance(ray, from, farthest) {
+                share *= self.share_through(materials, *surface, ray, || sphere.hit(ray, distance, *surface));
+                if share == 0.0 {
+                    return 0.0;
+                }
+                from = distance;
+            }
+        }
+        for (mesh, surface) in &self.meshes {
+            mesh.each(ray, nearest, farthest, |point| {
+                share *= self.share_through(materials, *surface, ray, || mesh.hit(ray, point, *surface));
+                share > 0.0
+            });
+            if share == 0.0 {
+                return 0.0;
+            }
+        }
+        share
+    }
+
+    #[inline]
+    fn share_through(
+        &self,
+        materials: &[BoundMaterial<'_>],
+        surface: usize,
+        ray: &Ray,
+        hit: impl FnOnce() -> Hit,
+    ) -> f64 {
+        match self.surfaces[surface] {
+            Surface::Material(material) if materials[material].passes => {
+                let hit = hit();
+                let frame = Frame::new(hit.normal, hit.tangent);
+                materials[material].bsdf.straight_through(&frame.to_local(&ray.direction))
+            }
+            Surface::Material(_) | Surface::Light(_) => 0.0,
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Scenes as people type them, and as [`crate::render`] takes them.
+//!
+//! [`SceneFile`] is what stands in a JSON file; [`CheckedScene`] is what was meant, and cannot be wrong. Each thing that
+//! makes no sense is a sentence with its key.
+
+mod check;
+mod error;
+mod file;
+mod inputs;
+mod material;
+mod read;
+mod schema;
+
+pub use check::CheckedScene;
+pub use error::{SceneError, SceneProblem};
+pub use file::{
+    CameraFile, DirectionalLightFile, Encoding, EnvironmentFile, ImageFile, LightFile, MaterialFile, MeshFile,
+    ObjectFile, OrthographicFile, PerspectiveFile, PointLightFile, RectangleFile, RectangleLightFile, SceneFile,
+    SphereFile, SphereLightFile, TextureFile,
+};
+pub use schema::schemas;
