@@ -1,8 +1,9 @@
 //! Barbule fits a physical model of how a feather looks to measurements of real feathers, and shows how good the fit is.
 //!
 //! The rooms, from the bottom up: [`optics`] and [`pigment`], [`bsdf`], [`measure`], [`render`], [`job`], [`scene`],
-//! [`report`]; each may use what stands before it. [`fit`] stands beside them on [`parameter`] alone and knows nothing of feathers; `job` is where a
-//! measurement, a model and the engine meet.
+//! [`report`]; each may use what stands before it. [`fit`] stands beside them on [`parameter`] alone and knows nothing of
+//! feathers; `job` is where a measurement, a model and the engine meet. [`sensitivity`] stands beside `fit` and knows
+//! nothing but numbers.
 
 pub mod bsdf;
 pub mod fit;
@@ -16,3 +17,4 @@ pub mod pigment;
 pub mod render;
 pub mod report;
 pub mod scene;
+pub mod sensitivity;

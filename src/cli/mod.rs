@@ -8,6 +8,7 @@ mod output;
 mod render;
 mod schema;
 mod simulate;
+mod sweep;
 
 use std::process::ExitCode;
 
@@ -30,6 +31,7 @@ enum Command {
     New(new::New),
     Fit(fit::Fit),
     Simulate(simulate::Simulate),
+    Sweep(sweep::Sweep),
     Check(check::Check),
     Render(render::Render),
     Models(models::Models),
@@ -53,6 +55,7 @@ pub(crate) fn main() -> ExitCode {
         Command::New(command) => command.run(),
         Command::Fit(command) => command.run(),
         Command::Simulate(command) => command.run(),
+        Command::Sweep(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Render(command) => command.run(),
         Command::Models(command) => command.run(),

@@ -1,4 +1,4 @@
-//! Writing to standard output, and what comes before and after writing files.
+//! What several subcommands share: writing to standard output, what comes before and after writing files, settings.
 
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
@@ -26,4 +26,11 @@ pub(super) fn is_broken_pipe(error: &anyhow::Error) -> bool {
         .chain()
         .filter_map(|cause| cause.downcast_ref::<io::Error>())
         .any(|cause| cause.kind() == ErrorKind::BrokenPipe)
+}
+
+/// Reads `NAME=VALUE`.
+pub(super) fn setting(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, as film.thickness_nm=330")?;
+    let value = value.trim().parse().map_err(|_| format!("`{value}` is not a number"))?;
+    Ok((name.trim().to_owned(), value))
 }

@@ -8,7 +8,7 @@ use barbule::report::write_file;
 use clap::Args;
 
 use super::Ending;
-use super::output::print;
+use super::output::{print, setting};
 
 /// Run a job's model forward: its readings at the geometry of the job's table.
 ///
@@ -56,10 +56,4 @@ fn is_input(path: &Path, job: &Job) -> bool {
     let inputs = std::iter::once(job.path.clone()).chain(job.table_path());
     path.canonicalize()
         .is_ok_and(|path| inputs.filter_map(|input| input.canonicalize().ok()).any(|input| input == path))
-}
-
-fn setting(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE, as film.thickness_nm=330")?;
-    let value = value.trim().parse().map_err(|_| format!("`{value}` is not a number"))?;
-    Ok((name.trim().to_owned(), value))
 }

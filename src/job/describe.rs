@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::case::Comparison;
 use super::model_note::model_note;
+use super::sweep::describe as describe_sweep;
 use super::{Job, JobError};
 use crate::fit::{Assignment, Role};
 use crate::number::plain;
@@ -35,6 +36,9 @@ pub fn describe(job: &Job) -> Result<String, JobError> {
             let _ =
                 writeln!(text, "  {:<30} {}", parameter.name, role_text(parameter, assignment, residuals.parameters()));
         }
+    }
+    if job.file.sweep.is_some() {
+        let _ = writeln!(text, "\nSweep\n  {}", describe_sweep(job)?);
     }
     Ok(text.trim_end().to_owned())
 }

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
+use super::sweep::SweepFile;
 use crate::bsdf::cylinder::{CylinderDesign, FilmedCylinderDesign};
 use crate::bsdf::{
     Design, FeatherDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign,
@@ -45,6 +46,8 @@ pub struct JobFile {
     /// Other assumptions on the same data, fitted beside the main case and shown in the same report.
     #[serde(default)]
     pub alternative: Vec<AlternativeFile>,
+    /// What `sweep` goes through; `fit` does not look at it.
+    pub sweep: Option<SweepFile>,
 }
 
 fn default_case() -> String {
@@ -96,17 +99,30 @@ pub struct SyntheticFile {
     /// Meaning of the values.
     pub quantity: Quantity,
     /// Inclinations of light and viewer, in mirror position, degrees.
+    #[serde(default)]
     pub mirror_deg: Vec<f64>,
-    /// First and last wavelength, nm.
-    pub window_nm: [f64; 2],
+    /// Further geometries by four angles each, degrees: inclination and azimuth of the light, then of the viewer.
+    #[serde(default)]
+    pub angles_deg: Vec<[f64; 4]>,
+    /// First and last wavelength, nm, with `step_nm`; or `wavelengths_nm` alone.
+    pub window_nm: Option<[f64; 2]>,
     /// Step between wavelengths, nm.
-    pub step_nm: f64,
+    pub step_nm: Option<f64>,
+    /// The wavelengths themselves, nm, rising.
+    pub wavelengths_nm: Option<Vec<f64>>,
     /// Standard deviation of the noise as a share of each reading.
+    #[serde(default)]
     pub noise: f64,
     /// Seed of the noise.
+    #[serde(default = "first_seed")]
     pub seed: u64,
     /// True values of parameters, by name; the rest have their defaults.
+    #[serde(default)]
     pub truth: BTreeMap<String, f64>,
+}
+
+fn first_seed() -> u64 {
+    1
 }
 
 /// The model.

@@ -88,7 +88,7 @@ impl Job {
     }
 
     /// The error with its file, line and case, as far as it does not name them itself.
-    fn placed(&self, error: JobError, case: usize) -> JobError {
+    pub(super) fn placed(&self, error: JobError, case: usize) -> JobError {
         let keys = match &error {
             JobError::Key { key, .. } => keys_of(key),
             JobError::Model(_) => vec!["model".to_owned()],

@@ -20,6 +20,7 @@ mod schema;
 mod simulate;
 mod spectra;
 mod support;
+mod sweep;
 mod syntax;
 mod synthetic;
 mod values;
@@ -38,6 +39,10 @@ pub use outcome::{
 pub use run::run;
 pub use schema::schemas;
 pub use simulate::{Noise, simulate};
+pub use sweep::{
+    AxisFile, Cell, Colour, Excursion, Own, Rate, Slope, SobolFile, Spacing, Sweep, SweepAxis, SweepFile, Variance,
+    VarianceOf, Varying, View, sweep,
+};
 
 pub(crate) use syntax::{in_words, model_slip, written};
 

@@ -6,7 +6,7 @@ use super::synthetic::{add_noise, deviates};
 use super::values::{Values, checked};
 use super::{Job, JobError};
 use crate::fit::{Role, first_values};
-use crate::measure::{Geometry, GonioTable, Quantity};
+use crate::measure::{Geometry, GonioTable};
 
 /// Noise to add to simulated readings.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,11 +76,7 @@ fn name_and_angles(name: &str, geometry: &Geometry) -> String {
 }
 
 fn spectra_csv(table: &GonioTable) -> String {
-    let value = match table.quantity {
-        Quantity::Brdf => "brdf_per_sr",
-        Quantity::BsdfCos => "bsdf_cos_per_sr",
-        Quantity::Reflectance => "reflectance",
-    };
+    let value = table.quantity.column();
     let with_sigma = table.spectra.iter().all(|spectrum| spectrum.sigmas.is_some());
     let sigma_header = if with_sigma { ",sigma" } else { "" };
     let mut text = format!("{NAME_AND_ANGLES},wavelength_nm,{value}{sigma_header}\n");

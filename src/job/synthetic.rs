@@ -16,28 +16,10 @@ const LARGEST_TABLE: f64 = 1e7;
 
 /// Readings of the recipe, noise included.
 pub(super) fn readings(recipe: &SyntheticFile, file: &JobFile) -> Result<GonioTable, JobError> {
-    let key = |name: &str, problem: String| JobError::key(format!("data.synthetic.{name}"), problem);
-    let [first_nm, last_nm] = recipe.window_nm;
-    // The small addition keeps a last wavelength that rounding would lose.
-    let count = ((last_nm - first_nm) / recipe.step_nm + 1e-9).floor() + 1.0;
-    if !(first_nm > 0.0 && recipe.step_nm > 0.0 && last_nm > first_nm && count.is_finite()) {
-        let found = format!("found {first_nm} to {last_nm} in steps of {}", recipe.step_nm);
-        return Err(key("window_nm", format!("{found}; expected a rising range above 0 and a step above 0")));
-    }
-    if count * f64::from(u32::try_from(recipe.mirror_deg.len()).unwrap_or(u32::MAX)) > LARGEST_TABLE {
+    let wavelengths_nm = wavelengths_nm(recipe)?;
+    let geometries = geometries(recipe)?;
+    if as_f64(wavelengths_nm.len()) * as_f64(geometries.len()) > LARGEST_TABLE {
         return Err(key("step_nm", format!("this makes more than {LARGEST_TABLE:e} readings; take a larger step")));
-    }
-    if recipe.mirror_deg.is_empty() {
-        return Err(key("mirror_deg", "the list is empty; give at least one inclination".into()));
-    }
-    if let Some(angle) = recipe.mirror_deg.iter().find(|angle| !(0.0..90.0).contains(*angle)) {
-        return Err(key("mirror_deg", format!("found {angle}; expected inclinations from 0 to below 90 degrees")));
-    }
-    // A spectrum is named after its angle, and its gain after its name.
-    let mut sorted = recipe.mirror_deg.clone();
-    sorted.sort_by(f64::total_cmp);
-    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] >= pair[1]) {
-        return Err(key("mirror_deg", format!("found {} twice; give each inclination once", pair[0])));
     }
     if !(0.0..1.0).contains(&recipe.noise) {
         return Err(key(
@@ -45,14 +27,11 @@ pub(super) fn readings(recipe: &SyntheticFile, file: &JobFile) -> Result<GonioTa
             format!("found {}; expected a share of each reading from 0 to below 1", recipe.noise),
         ));
     }
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded by LARGEST_TABLE above")]
-    let wavelengths_nm: Vec<f64> = (0..count as u32).map(|step| first_nm + recipe.step_nm * f64::from(step)).collect();
-    let spectra = recipe
-        .mirror_deg
-        .iter()
-        .map(|angle| Spectrum {
-            id: format!("{angle}°"),
-            geometry: Geometry::mirror(*angle),
+    let spectra = geometries
+        .into_iter()
+        .map(|(id, geometry)| Spectrum {
+            id,
+            geometry,
             values: vec![0.0; wavelengths_nm.len()],
             wavelengths_nm: wavelengths_nm.clone(),
             sigmas: None,
@@ -75,6 +54,93 @@ pub(super) fn readings(recipe: &SyntheticFile, file: &JobFile) -> Result<GonioTa
         return Err(key("noise", problem.into()));
     }
     Ok(table)
+}
+
+/// The error of a key in the recipe's section.
+fn key(name: &str, problem: String) -> JobError {
+    JobError::key(format!("data.synthetic.{name}"), problem)
+}
+
+/// The recipe's wavelengths, however it gives them.
+fn wavelengths_nm(recipe: &SyntheticFile) -> Result<Vec<f64>, JobError> {
+    match (&recipe.wavelengths_nm, recipe.window_nm, recipe.step_nm) {
+        (Some(list), None, None) => {
+            let is_wrong = |nm: &&f64| !nm.is_finite() || **nm <= 0.0;
+            if let Some(found) = list.iter().find(is_wrong) {
+                return Err(key("wavelengths_nm", format!("found {found}; expected wavelengths above 0")));
+            }
+            if list.is_empty() {
+                return Err(key("wavelengths_nm", "the list is empty; give at least one wavelength".into()));
+            }
+            if let Some(pair) = list.windows(2).find(|pair| pair[0] >= pair[1]) {
+                let problem = format!("found {} before {}; write them rising, each once", pair[0], pair[1]);
+                return Err(key("wavelengths_nm", problem));
+            }
+            Ok(list.clone())
+        }
+        (None, Some([first_nm, last_nm]), Some(step_nm)) => {
+            // The small addition keeps a last wavelength that rounding would lose.
+            let count = ((last_nm - first_nm) / step_nm + 1e-9).floor() + 1.0;
+            if !(first_nm > 0.0 && step_nm > 0.0 && last_nm > first_nm && count.is_finite()) {
+                let found = format!("found {first_nm} to {last_nm} in steps of {step_nm}");
+                return Err(key("window_nm", format!("{found}; expected a rising range above 0 and a step above 0")));
+            }
+            if count > LARGEST_TABLE {
+                let problem = format!("this makes more than {LARGEST_TABLE:e} readings; take a larger step");
+                return Err(key("step_nm", problem));
+            }
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "bounded by LARGEST_TABLE above"
+            )]
+            let steps = 0..count as u32;
+            Ok(steps.map(|step| first_nm + step_nm * f64::from(step)).collect())
+        }
+        _ => {
+            let problem = "expected either `window_nm` with `step_nm`, or `wavelengths_nm` alone".into();
+            Err(key("window_nm", problem))
+        }
+    }
+}
+
+/// The recipe's geometries, named after their angles.
+fn geometries(recipe: &SyntheticFile) -> Result<Vec<(String, Geometry)>, JobError> {
+    let inside = |angle: f64| (0.0..90.0).contains(&angle);
+    if recipe.mirror_deg.is_empty() && recipe.angles_deg.is_empty() {
+        return Err(key("mirror_deg", "the list is empty; give at least one inclination".into()));
+    }
+    if let Some(angle) = recipe.mirror_deg.iter().find(|angle| !inside(**angle)) {
+        return Err(key("mirror_deg", format!("found {angle}; expected inclinations from 0 to below 90 degrees")));
+    }
+    let mirror = recipe.mirror_deg.iter().map(|angle| (format!("{angle}°"), Geometry::mirror(*angle)));
+    let mut found: Vec<(String, Geometry)> = mirror.collect();
+    // A spectrum is named after its angles, and its gain after its name.
+    let mut names = std::collections::BTreeSet::new();
+    if let Some((name, _)) = found.iter().find(|(name, _)| !names.insert(name.clone())) {
+        let problem = format!("found {} twice; give each inclination once", name.trim_end_matches('°'));
+        return Err(key("mirror_deg", problem));
+    }
+    for [theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg] in recipe.angles_deg.iter().copied() {
+        let name = format!("{theta_i_deg}°, {phi_i_deg}° to {theta_o_deg}°, {phi_o_deg}°");
+        if !(inside(theta_i_deg) && inside(theta_o_deg) && phi_i_deg.is_finite() && phi_o_deg.is_finite()) {
+            let problem = format!(
+                "found {name}; expected inclinations (first and third) from 0 to below 90 degrees, and azimuths (second \
+                 and fourth)"
+            );
+            return Err(key("angles_deg", problem));
+        }
+        if !names.insert(name.clone()) {
+            return Err(key("angles_deg", format!("found {name} twice; give each geometry once")));
+        }
+        found.push((name, Geometry { theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg }));
+    }
+    Ok(found)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a count of readings")]
+fn as_f64(count: usize) -> f64 {
+    count as f64
 }
 
 /// Multiplies each reading by 1 + noise·z and notes σ = noise · |reading| as an instrument's maker would state it.

@@ -20,6 +20,15 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// Name of a column that holds it, with its unit.
+    pub fn column(self) -> &'static str {
+        match self {
+            Self::Brdf => "brdf_per_sr",
+            Self::BsdfCos => "bsdf_cos_per_sr",
+            Self::Reflectance => "reflectance",
+        }
+    }
+
     /// The reading as a ratio to a white Lambertian standard, whose BRDF is 1/π in all directions.
     pub fn reflectance_factor(self, reading: f64, geometry: &Geometry) -> f64 {
         match self {

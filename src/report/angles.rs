@@ -126,7 +126,7 @@ fn by_angle(spectra: &[SpectrumFit]) -> Vec<usize> {
 }
 
 /// At most `wanted` of `0..count`, first and last among them.
-fn evenly(count: usize, wanted: usize) -> Vec<usize> {
+pub(crate) fn evenly(count: usize, wanted: usize) -> Vec<usize> {
     if count <= wanted {
         return (0..count).collect();
     }

@@ -64,6 +64,7 @@ pub(crate) enum AxisKind {
 pub(crate) enum Layer {
     Series(Series),
     Map(Map),
+    ColourCells(ColourCells),
     /// A thin line across the chart at this y.
     Level(f64),
     /// A short text above a point; left out where it would cover another.
@@ -121,6 +122,17 @@ pub(crate) struct Map {
     pub(crate) clipped: String,
     /// Whether each value is written in its cell.
     pub(crate) with_numbers: bool,
+}
+
+/// Colours by column and row, as they are.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct ColourCells {
+    /// Borders of the columns on the x axis, one more than there are columns.
+    pub(crate) borders: Vec<f64>,
+    /// One row a band of the y axis.
+    pub(crate) rows: Vec<Vec<Colour>>,
+    /// What a table calls the colours.
+    pub(crate) label: String,
 }
 
 impl Axis {

@@ -1,6 +1,8 @@
 //! The numbers behind a figure, as tables that any program reads.
 
-use super::chart::{AxisKind, Chart, Figure, Layer, Map, Series};
+use plotters::style::RGBColor;
+
+use super::chart::{AxisKind, Chart, ColourCells, Figure, Layer, Map, Series};
 
 /// A table of a figure's numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,9 +29,10 @@ pub(crate) fn tables(figure: &Figure) -> Result<Vec<CurveTable>, csv::Error> {
     let mut tables = Vec::new();
     for (index, (x, y)) in kinds.iter().enumerate() {
         let same: Vec<_> = charts.iter().filter(|(_, c)| c.x.label == *x && c.y.label == *y).copied().collect();
-        let csv = match first_map(&same) {
-            Some(map) => map_table(&same, x, y, &map.label)?,
-            None => curve_table(&same, x, y)?,
+        let csv = match (first_map(&same), first_colours(&same)) {
+            (Some(map), _) => map_table(&same, x, y, &map.label)?,
+            (None, Some(cells)) => colour_table(&same, x, y, &cells.label)?,
+            (None, None) => curve_table(&same, x, y)?,
         };
         let suffix = if index == 0 { String::new() } else { format!("-{}", index + 1) };
         tables.push(CurveTable { file: format!("{}{suffix}.csv", figure.name), csv });
@@ -69,22 +72,56 @@ fn map_table(charts: &[(&str, &Chart)], x: &str, y: &str, value: &str) -> Result
     for (panel, chart) in charts {
         let Some(map) = first_map(&[(panel, chart)]) else { continue };
         for (index, row) in map.rows.iter().enumerate() {
-            let row_name = match &chart.y.kind {
-                AxisKind::Bands(names) => names.get(index).cloned().unwrap_or_default(),
-                AxisKind::Linear | AxisKind::Counts | AxisKind::Logarithmic => index.to_string(),
-            };
+            let row_name = row_name(chart, index);
             for (column, cell) in row.iter().enumerate() {
-                let column_name = match (&chart.x.kind, map.borders.get(column..column + 2)) {
-                    (AxisKind::Bands(names), _) => names.get(column).cloned().unwrap_or_default(),
-                    (_, Some([from, to])) => written((from + to) / 2.0),
-                    _ => String::new(),
-                };
+                let column_name = column_name(chart, &map.borders, column);
                 let number = cell.map(written).unwrap_or_default();
                 writer.write_record([*panel, row_name.as_str(), column_name.as_str(), number.as_str()])?;
             }
         }
     }
     finished(writer)
+}
+
+fn colour_table(charts: &[(&str, &Chart)], x: &str, y: &str, colour: &str) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["panel", y, x, colour])?;
+    for (panel, chart) in charts {
+        let Some(cells) = first_colours(&[(panel, chart)]) else { continue };
+        for (index, row) in cells.rows.iter().enumerate() {
+            for (column, RGBColor(red, green, blue)) in row.iter().enumerate() {
+                let hex = format!("#{red:02x}{green:02x}{blue:02x}");
+                writer.write_record([
+                    *panel,
+                    &row_name(chart, index),
+                    &column_name(chart, &cells.borders, column),
+                    &hex,
+                ])?;
+            }
+        }
+    }
+    finished(writer)
+}
+
+fn row_name(chart: &Chart, index: usize) -> String {
+    match &chart.y.kind {
+        AxisKind::Bands(names) => names.get(index).cloned().unwrap_or_default(),
+        AxisKind::Linear | AxisKind::Counts | AxisKind::Logarithmic => index.to_string(),
+    }
+}
+
+/// The band's name, or the middle of the column.
+fn column_name(chart: &Chart, borders: &[f64], column: usize) -> String {
+    match (&chart.x.kind, borders.get(column..column + 2)) {
+        (AxisKind::Bands(names), _) => names.get(column).cloned().unwrap_or_default(),
+        (_, Some([from, to])) => written((from + to) / 2.0),
+        _ => String::new(),
+    }
+}
+
+fn first_colours<'a>(charts: &[(&str, &'a Chart)]) -> Option<&'a ColourCells> {
+    let layers = charts.iter().flat_map(|(_, c)| &c.layers);
+    layers.into_iter().find_map(|l| if let Layer::ColourCells(cells) = l { Some(cells) } else { None })
 }
 
 fn first_map<'a>(charts: &[(&str, &'a Chart)]) -> Option<&'a Map> {

@@ -1,6 +1,7 @@
 //! Where everything of a figure goes: a [`Figure`] becomes a list of shapes in page pixels.
 
 use super::chart::{Axis, AxisKind, Cell, Chart, Figure, Layer, Look, Map, Mark, Point, Series, length};
+use super::colour_cells;
 use super::frame::{Frame, clipped, thinned};
 use super::palette::{BLACK, Colour, GREY, INK, PALE, Scale, WHITE, is_light};
 use super::plot::{Align, Drawing, Shape, text_width};
@@ -182,6 +183,7 @@ fn lay_chart(chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
         match layer {
             Layer::Series(series) => lay_series(series, chart, frame, shapes),
             Layer::Map(map) => lay_map(map, chart, frame, shapes),
+            Layer::ColourCells(cells) => colour_cells::lay(cells, chart, frame, shapes),
             Layer::Level(at) => {
                 if let Some(y) = place_y(&chart.y, *at, frame) {
                     shapes.push(line(&[(frame.left, y), (frame.right, y)], GREY, 1.0));
@@ -412,11 +414,11 @@ fn first_map(chart: &Chart) -> Option<&Map> {
     chart.layers.iter().find_map(|layer| if let Layer::Map(map) = layer { Some(map) } else { None })
 }
 
-fn x_of(axis: &Axis, value: f64, frame: Frame) -> Option<f64> {
+pub(super) fn x_of(axis: &Axis, value: f64, frame: Frame) -> Option<f64> {
     Some(frame.left + axis.share(value)? * frame.width())
 }
 
-fn y_of(axis: &Axis, value: f64, frame: Frame) -> Option<f64> {
+pub(super) fn y_of(axis: &Axis, value: f64, frame: Frame) -> Option<f64> {
     Some(frame.bottom - axis.share(value)? * frame.height())
 }
 

@@ -19,8 +19,8 @@ pub(crate) struct Paragraph {
 
 /// Works cited so far; a work's number is its place in the list.
 #[derive(Default)]
-struct Bibliography {
-    works: Vec<Reference>,
+pub(super) struct Bibliography {
+    pub(super) works: Vec<Reference>,
 }
 
 impl Bibliography {
@@ -34,12 +34,12 @@ impl Bibliography {
         }
     }
 
-    fn cite(&mut self, (key, citation): (&str, &str)) -> String {
+    pub(super) fn cite(&mut self, (key, citation): (&str, &str)) -> String {
         format!("[{}]", self.number(&Reference { key: key.to_owned(), citation: citation.to_owned() }))
     }
 }
 
-type Work = (&'static str, &'static str);
+pub(super) type Work = (&'static str, &'static str);
 const MORE: Work = (
     "Moré 1978",
     "Moré J. J. 1978. The Levenberg–Marquardt algorithm: implementation and theory. In: Watson G. A. (ed.) Numerical \
@@ -62,7 +62,7 @@ const ARGMIN: Work = (
     "argmin",
     "Kroboth S. and contributors. argmin: numerical optimization in pure Rust, version 0.11. argmin-rs.org.",
 );
-const BURLEY: Work = (
+pub(super) const BURLEY: Work = (
     "Burley 2020",
     "Burley B. 2020. Practical hash-based Owen scrambling. Journal of Computer Graphics Techniques 9 (4), 1–20.",
 );
@@ -94,7 +94,7 @@ const FORES: Work = (
     "Fores A., Ferwerda J., Gu J. 2012. Toward a perceptually based metric for BRDF modeling. Color and Imaging Conference 20, \
      142–148.",
 );
-const SHARMA: Work = (
+pub(super) const SHARMA: Work = (
     "Sharma et al. 2005",
     "Sharma G., Wu W., Dalal E. N. 2005. The CIEDE2000 color-difference formula: implementation notes, supplementary test \
      data, and mathematical observations. Color Research & Application 30, 21–30.",
@@ -159,7 +159,7 @@ pub(crate) fn of(outcome: &Outcome, has_swatches: bool) -> Methods {
 }
 
 /// The model's own text, its works cited where it names them, the others at its end; then its materials.
-fn model_text(note: &ModelNote, bibliography: &mut Bibliography) -> String {
+pub(super) fn model_text(note: &ModelNote, bibliography: &mut Bibliography) -> String {
     let mut text = note.text.trim().to_owned();
     let mut unnamed = Vec::new();
     // Numbers rise through the text: works in the order in which it names them, the others last.

@@ -1,4 +1,5 @@
-//! The report of a fit: one folder with a page that answers in its first sentence, its plots and their numbers.
+//! The report of a fit, or of a sweep: one folder with a page that answers in its first sentence, its plots and their
+//! numbers.
 //!
 //! ```text
 //! index.html      self-contained: styles and plots inside, no script, nothing fetched
@@ -12,6 +13,7 @@
 
 mod angles;
 mod chart;
+mod colour_cells;
 mod curves;
 mod files;
 mod frame;
@@ -23,6 +25,7 @@ mod plot;
 mod plots;
 mod readings;
 mod swatch;
+mod sweep;
 mod tables;
 mod ticks;
 
@@ -34,6 +37,7 @@ use chart::Figure;
 use plots::Place;
 
 pub use files::write as write_file;
+pub use sweep::write_sweep;
 
 /// Why a report could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -70,7 +74,15 @@ pub enum ReportError {
 pub fn write_report(outcome: &Outcome, folder: &Path) -> Result<PathBuf, ReportError> {
     let chapters: Vec<Chapter> =
         outcome.cases.iter().enumerate().map(|(index, _)| Chapter::draw(outcome, index)).collect::<Result<_, _>>()?;
-    for picture in chapters.iter().flat_map(|c| &c.pictures) {
+    write_pictures(chapters.iter().flat_map(|chapter| &chapter.pictures).map(|(_, picture)| picture), folder)?;
+    let page = folder.join("index.html");
+    files::write(&page, page::html(outcome, &chapters)?.as_bytes())?;
+    Ok(page)
+}
+
+/// Writes each picture as SVG and PNG, and its numbers beside them.
+fn write_pictures<'a>(pictures: impl Iterator<Item = &'a Picture>, folder: &Path) -> Result<(), ReportError> {
+    for picture in pictures {
         let name = &picture.figure.name;
         files::write(&folder.join("plots").join(format!("{name}.svg")), picture.svg.as_bytes())?;
         files::write(&folder.join("plots").join(format!("{name}.png")), &picture.png)?;
@@ -78,20 +90,17 @@ pub fn write_report(outcome: &Outcome, folder: &Path) -> Result<PathBuf, ReportE
             files::write(&folder.join("curves").join(&table.file), table.csv.as_bytes())?;
         }
     }
-    let page = folder.join("index.html");
-    files::write(&page, page::html(outcome, &chapters)?.as_bytes())?;
-    Ok(page)
+    Ok(())
 }
 
-/// The pictures of one case.
+/// The pictures of one case, each with its place on the page.
 struct Chapter<'a> {
     case: &'a Case,
-    pictures: Vec<Picture>,
+    pictures: Vec<(Place, Picture)>,
 }
 
 /// A figure, painted.
 struct Picture {
-    place: Place,
     figure: Figure,
     svg: String,
     png: Vec<u8>,
@@ -112,21 +121,21 @@ impl<'a> Chapter<'a> {
                 if outcome.synthetic.is_some() {
                     figure.title = format!("Synthetic readings · {}", figure.title);
                 }
-                Picture::paint(place, figure)
+                Ok((place, Picture::paint(figure)?))
             })
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<_, ReportError>>()?;
         Ok(Self { case, pictures })
     }
 }
 
 impl Picture {
-    fn paint(place: Place, figure: Figure) -> Result<Self, ReportError> {
+    fn paint(figure: Figure) -> Result<Self, ReportError> {
         let failed =
             |error: &dyn std::fmt::Display| ReportError::Paint { figure: figure.name.clone(), text: error.to_string() };
         let drawing = layout::drawing(&figure);
         let svg = plot::svg(&drawing, &figure.title).map_err(|e| failed(&e))?;
         let png = plot::png(&drawing).map_err(|e| failed(&e))?;
         let tables = curves::tables(&figure).map_err(|e| failed(&e))?;
-        Ok(Self { place, figure, svg, png, tables })
+        Ok(Self { figure, svg, png, tables })
     }
 }

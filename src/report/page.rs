@@ -84,7 +84,7 @@ struct CaseView<'a> {
     name: &'a str,
     text: &'a str,
     answer: &'a str,
-    figures: Vec<FigureView<'a>>,
+    figures: Vec<(Place, FigureView<'a>)>,
     swatches: Option<SwatchTable>,
     orders: Vec<OrderRow>,
     has_truth: bool,
@@ -106,7 +106,7 @@ impl<'a> CaseView<'a> {
             name: &case.name,
             text: &case.text,
             answer: &case.answer,
-            figures: chapter.pictures.iter().map(FigureView::new).collect(),
+            figures: chapter.pictures.iter().map(|(place, picture)| (*place, FigureView::new(picture))).collect(),
             swatches: swatch::of(case).map(|s| SwatchTable::new(&s)),
             orders: tables::orders(&case.orders),
             has_truth: outcome.synthetic.is_some(),
@@ -142,23 +142,21 @@ impl<'a> CaseView<'a> {
     }
 
     fn at(&self, place: Place) -> impl Iterator<Item = &FigureView<'a>> {
-        self.figures.iter().filter(move |f| f.place == place)
+        self.figures.iter().filter(move |(of, _)| *of == place).map(|(_, figure)| figure)
     }
 }
 
 /// A figure on the page.
-struct FigureView<'a> {
-    place: Place,
-    name: &'a str,
-    caption: &'a str,
-    svg: &'a str,
-    tables: Vec<&'a str>,
+pub(super) struct FigureView<'a> {
+    pub(super) name: &'a str,
+    pub(super) caption: &'a str,
+    pub(super) svg: &'a str,
+    pub(super) tables: Vec<&'a str>,
 }
 
 impl<'a> FigureView<'a> {
-    fn new(picture: &'a Picture) -> Self {
+    pub(super) fn new(picture: &'a Picture) -> Self {
         Self {
-            place: picture.place,
             name: &picture.figure.name,
             caption: &picture.figure.caption,
             svg: &picture.svg,

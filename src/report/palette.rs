@@ -15,6 +15,7 @@ pub(crate) const SKY: Colour = RGBColor(86, 180, 233);
 pub(crate) const BLUE: Colour = RGBColor(0, 114, 178);
 pub(crate) const GREEN: Colour = RGBColor(0, 158, 115);
 pub(crate) const VERMILION: Colour = RGBColor(213, 94, 0);
+pub(crate) const PURPLE: Colour = RGBColor(204, 121, 167);
 
 /// What a map's colours mean.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use barbule::measure::colour::{Lab, Swatch, Xyz, encode};
+use barbule::measure::colour::{Lab, LinearRgb, Swatch, Xyz, encode, spectral_locus};
 use barbule::measure::{Geometry, Quantity};
 use proptest::prelude::*;
 
@@ -138,6 +138,34 @@ fn a_swatch_says_what_it_hides() {
     assert_eq!(Swatch::new(&all, &[1.0]), None);
 }
 
+/// Chromaticities of spectral colours as the CIE prints them (CIE 15:2018, Table T.4), to four decimals, and of D65.
+#[test]
+fn chromaticities_are_the_published_ones() {
+    let locus: Vec<(f64, [f64; 2])> = spectral_locus().collect();
+    let of = |nm: f64| locus.iter().find(|(known, _)| (known - nm).abs() < 0.5).unwrap().1;
+    for (nm, x, y) in
+        [(450.0, 0.1566, 0.0177), (520.0, 0.0743, 0.8338), (580.0, 0.5125, 0.4866), (700.0, 0.7347, 0.2653)]
+    {
+        assert_close(of(nm)[0], x, 5e-5, "x");
+        assert_close(of(nm)[1], y, 5e-5, "y");
+    }
+    let [x, y] = Xyz::white().chromaticity().unwrap();
+    assert_close(x, 0.3127, 5e-5, "x of D65");
+    assert_close(y, 0.3290, 5e-5, "y of D65");
+    assert_eq!(Xyz { x: 0.0, y: 0.0, z: 0.0 }.chromaticity(), None);
+}
+
+#[test]
+fn equal_channels_are_grey() {
+    for level in [0.001, 0.2, 1.0] {
+        let lab = LinearRgb([level; 3]).to_lab();
+        // Rounding of numbers up to 500.
+        assert!(lab.a.abs() < 1e-12 && lab.b.abs() < 1e-12, "{lab:?}");
+    }
+    assert_eq!(LinearRgb([1.0; 3]).to_lab().l, 100.0);
+    assert_eq!(LinearRgb([1.0, 0.0, 2.0]).on_screen(), ("#ff00ff".to_owned(), true));
+}
+
 #[test]
 fn a_white_surface_is_white_in_every_quantity() {
     let geometry = Geometry { theta_i_deg: 10.0, phi_i_deg: 0.0, theta_o_deg: 60.0, phi_o_deg: 90.0 };
@@ -153,6 +181,13 @@ fn lab() -> impl Strategy<Value = Lab> {
 }
 
 proptest! {
+    #[test]
+    fn channels_come_back_from_xyz(r in -1.0..2.0_f64, g in -1.0..2.0_f64, b in -1.0..2.0_f64) {
+        let back = LinearRgb([r, g, b]).to_xyz().to_linear_rgb();
+        // Two products with matrices of entries up to 3.3, whose digits are 17.
+        prop_assert!(back.0.iter().zip([r, g, b]).all(|(found, expected)| (found - expected).abs() < 1e-13));
+    }
+
     #[test]
     fn a_difference_is_symmetric_and_vanishes_on_itself(first in lab(), second in lab()) {
         let there = first.delta_e_2000(second);

@@ -28,6 +28,8 @@ mod report;
 mod rough_plastic;
 mod sampling;
 mod schema;
+mod sensitivity;
+mod sweep;
 mod tables;
 mod tangent;
 mod twins;

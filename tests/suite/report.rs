@@ -1,7 +1,7 @@
 //! The report as a reader gets it: a folder with a page, plots and tables.
 
 mod fixtures;
-mod markup;
+pub(crate) mod markup;
 
 use std::collections::BTreeMap;
 use std::fs;

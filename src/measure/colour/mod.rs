@@ -51,14 +51,30 @@ impl Swatch {
     /// None if there are no values, or not as many as wavelengths.
     pub fn new(wavelengths_nm: &[f64], reflectances: &[f64]) -> Option<Self> {
         let xyz = Xyz::of_reflectance(wavelengths_nm, reflectances)?;
-        let codes = xyz.to_linear_rgb().0.map(|channel| (encode(channel) * 255.0).round());
-        let [red, green, blue] = codes.map(|code| code.clamp(0.0, 255.0));
-        Some(Self {
-            hex: format!("#{:02x}{:02x}{:02x}", byte(red), byte(green), byte(blue)),
-            lab: xyz.to_lab(),
-            clipped: codes.iter().any(|code| !(0.0..=255.0).contains(code)),
-            extended: !covers_visible(wavelengths_nm),
-        })
+        let (hex, clipped) = xyz.to_linear_rgb().on_screen();
+        Some(Self { hex, lab: xyz.to_lab(), clipped, extended: !covers_visible(wavelengths_nm) })
+    }
+}
+
+impl LinearRgb {
+    /// CIE 1931 tristimulus values; white (1, 1, 1) has `y` = 1.
+    pub fn to_xyz(self) -> Xyz {
+        let [x, y, z] = RGB_TO_XYZ.map(|[r, g, b]| r * self.0[0] + g * self.0[1] + b * self.0[2]);
+        Xyz { x, y, z }
+    }
+
+    /// CIELAB against this space's own white, so that equal channels are grey. (Its white and that of
+    /// [`Xyz::of_reflectance`]'s sums differ by 3e-4.)
+    pub fn to_lab(self) -> Lab {
+        self.to_xyz().lab_against(Self([1.0; 3]).to_xyz())
+    }
+
+    /// As the web writes it, `#1a2b3c`, and whether that is only the nearest in each channel, since a screen cannot show
+    /// the colour itself.
+    pub fn on_screen(self) -> (String, bool) {
+        let codes = self.0.map(|channel| (encode(channel) * 255.0).round());
+        let [red, green, blue] = codes.map(|code| byte(code.clamp(0.0, 255.0)));
+        (format!("#{red:02x}{green:02x}{blue:02x}"), codes.iter().any(|code| !(0.0..=255.0).contains(code)))
     }
 }
 
@@ -88,7 +104,16 @@ impl Xyz {
 
     /// CIELAB (CIE 15:2018, 8.2.1).
     pub fn to_lab(self) -> Lab {
-        let white = Self::white();
+        self.lab_against(Self::white())
+    }
+
+    /// Chromaticity coordinates x and y (CIE 15:2018, 7.3); None for black, which has none.
+    pub fn chromaticity(self) -> Option<[f64; 2]> {
+        let sum = self.x + self.y + self.z;
+        (sum > 0.0).then(|| [self.x / sum, self.y / sum])
+    }
+
+    fn lab_against(self, white: Self) -> Lab {
         let [x, y, z] = [self.x / white.x, self.y / white.y, self.z / white.z].map(lab_root);
         Lab { l: 116.0 * y - 16.0, a: 500.0 * (x - y), b: 200.0 * (y - z) }
     }
@@ -102,6 +127,21 @@ const XYZ_TO_RGB: [[f64; 3]; 3] = [
     [-0.969_243_636_280_879_8, 1.875_967_501_507_720_6, 0.041_555_057_407_175_61],
     [0.055_630_079_696_993_61, -0.203_976_958_888_976_57, 1.056_971_514_242_878_6],
 ];
+
+/// From the Rec. 709 primaries to XYZ: the inverse of [`XYZ_TO_RGB`].
+const RGB_TO_XYZ: [[f64; 3]; 3] = [
+    [0.412_390_799_265_959_34, 0.357_584_339_383_878, 0.180_480_788_401_834_3],
+    [0.212_639_005_871_510_27, 0.715_168_678_767_756, 0.072_192_315_360_733_71],
+    [0.019_330_818_715_591_82, 0.119_194_779_794_625_99, 0.950_532_152_249_660_7],
+];
+
+/// Wavelength in nm and chromaticity of each spectral colour from 380 to 700 nm; beyond, the chromaticity stays where it is.
+pub fn spectral_locus() -> impl Iterator<Item = (f64, [f64; 2])> {
+    OBSERVER_AND_D65.into_iter().enumerate().filter_map(|(index, [x, y, z, _])| {
+        let nm = wavelength_nm(index);
+        Xyz { x, y, z }.chromaticity().filter(|_| nm <= 700.0).map(|place| (nm, place))
+    })
+}
 
 /// Whether the wavelengths reach over 380 to 780 nm, where eyes see.
 pub fn covers_visible(wavelengths_nm: &[f64]) -> bool {

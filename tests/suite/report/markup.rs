@@ -33,7 +33,7 @@ fn pieces(markup: &str) -> Vec<Piece<'_>> {
 }
 
 /// Every element is closed in order, and no bare `<` or `&` stands in a text.
-pub(super) fn assert_well_formed(markup: &str) {
+pub(crate) fn assert_well_formed(markup: &str) {
     let mut open: Vec<&str> = Vec::new();
     for piece in pieces(markup) {
         match piece {
@@ -76,7 +76,7 @@ pub(super) fn texts(markup: &str) -> Vec<String> {
 }
 
 /// Values of an attribute, in order.
-pub(super) fn attributes(markup: &str, name: &str) -> Vec<String> {
+pub(crate) fn attributes(markup: &str, name: &str) -> Vec<String> {
     let start = format!(" {name}=\"");
     let tags = pieces(markup).into_iter().filter_map(|p| if let Piece::Tag(tag) = p { Some(tag) } else { None });
     tags.filter_map(|tag| Some(resolved(tag.split_once(&start)?.1.split_once('"')?.0))).collect()
