@@ -432,7 +432,7 @@ fn shipped_sweeps_can_be_run() {
     for (name, says) in [
         ("sweep-thickness", "381 values of cortex.thickness_nm, 162 readings each"),
         ("sweep-roughness", "7 values of roughness × 96 values of cortex.thickness_nm"),
-        ("sweep-iridescent", "4 values of roughness × 155 values of thickness_nm, 6 readings each"),
+        ("sweep-iridescent", "4 values of roughness × 309 values of thickness_nm, 6 readings each"),
     ] {
         Desk::empty().barbule(&format!("check {}", shipped(name))).succeeds().prints(says);
     }

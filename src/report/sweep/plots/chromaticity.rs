@@ -4,9 +4,7 @@ use crate::job::Sweep;
 use crate::measure::colour::{LinearRgb, Xyz, spectral_locus};
 use crate::report::chart::{Axis, Cell, Chart, Figure, Layer, Look, Mark, PAGE_WIDTH, Point, Series, extent};
 use crate::report::palette::{BLACK, GREY, INK};
-use crate::report::sweep::swept::{
-    MOST_LINES, cell, columns, inner, line, marked_line, outer, points, setting, views, views_note,
-};
+use crate::report::sweep::swept::{cell, columns, inner, line, marked_line, outer, points, setting, views, views_note};
 
 /// Width of a frame where two stand beside each other on the page, page pixels: what makes both axes equally long.
 const FRAME_WIDTH: f64 = 400.0;
@@ -15,6 +13,8 @@ const NAMED_NM: [f64; 9] = [460.0, 480.0, 490.0, 500.0, 520.0, 540.0, 560.0, 580
 /// How far a wavelength stands from the locus, and how far a note's text above its point, in units of the whole diagram.
 const NOTE_DISTANCE: f64 = 0.045;
 const NOTE_RISE: f64 = 0.027;
+/// Most paths that an eye follows beside each other, where two parameters are swept.
+const MOST_PATHS: usize = 4;
 /// The least extent of the enlarged part.
 const LEAST_EXTENT: f64 = 0.02;
 /// Up to this many points each has its mark.
@@ -60,7 +60,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<Figure> {
         width: PAGE_WIDTH,
         columns: 2,
         cells: vec![
-            Cell { title: "whole".to_owned(), charts: vec![chart((-0.1, 0.8), (-0.02, 0.88))] },
+            Cell { title: "whole".to_owned(), charts: vec![chart((-0.1, 0.8), (-0.02, 0.94))] },
             Cell { title: "enlarged".to_owned(), charts: vec![chart(around(left, right), around(low, high))] },
         ],
     }]
@@ -77,7 +77,7 @@ fn paths(sweep: &Sweep) -> Vec<Series> {
     let families: Vec<(usize, String)> = match outer(sweep) {
         None => vec![(0, String::new())],
         Some(y) => {
-            let room = (MOST_LINES / shown.len()).max(1);
+            let room = (MOST_PATHS / shown.len()).max(1);
             let rows = columns(y);
             crate::report::angles::evenly(rows.len(), room)
                 .into_iter()

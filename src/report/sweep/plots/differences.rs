@@ -89,7 +89,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<Figure> {
         title: "Colour differences over the sweep".to_owned(),
         caption: format!(
             "CIEDE2000 difference to the first colour of the same geometry, at {}; about 1 can just be told apart side by \
-             side. Small steps are its own, where two hues lie opposite each other.{rates} {}",
+             side. Steps are its own, where two hues lie opposite each other.{rates} {}",
             first.join(", "),
             views_note(sweep)
         ),

@@ -42,7 +42,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<Figure> {
         title: "Each parameter on its own over its range".to_owned(),
         caption: format!(
             "One parameter is moved over its range, evenly or evenly in its logarithm as the table says, while all others \
-             keep the job's own values; a line touches 0 at the own value. Small steps are CIEDE2000's own, where two hues lie opposite each other.{crowded} {}",
+             keep the job's own values; a line touches 0 at the own value. Steps are CIEDE2000's own, where two hues lie opposite each other.{crowded} {}",
             views_note(sweep)
         ),
         width: PAGE_WIDTH,
