@@ -169,9 +169,9 @@ fn indices_of_several_outputs_together() {
     let settings = SobolSettings { samples: 256, replicates: 8, seed: 1 };
     let shares = sobol_indices(2, 3, &[1..3, 1..2, 0..1], settings, function).unwrap();
     for (indices, expected) in shares[0].indices.as_ref().unwrap().iter().zip([0.9, 0.1]) {
-        // Of an additive function both are the same, up to what a sequence of 256 points leaves.
-        approx::assert_abs_diff_eq!(indices.first_order.value, expected, epsilon = 5e-3);
-        approx::assert_abs_diff_eq!(indices.total.value, expected, epsilon = 5e-3);
+        // Of an additive function both are the same, up to what eight sequences of 256 points leave.
+        approx::assert_abs_diff_eq!(indices.first_order.value, expected, epsilon = 2e-2);
+        approx::assert_abs_diff_eq!(indices.total.value, expected, epsilon = 2e-2);
     }
     approx::assert_abs_diff_eq!(shares[1].indices.as_ref().unwrap()[1].total.value, 0.0, epsilon = 1e-12);
     assert_eq!((shares[2].mean, shares[2].standard_deviation, &shares[2].indices), (5.0, 0.0, &None));
@@ -216,15 +216,17 @@ fn a_function_that_refuses_a_point_says_so() {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))] // each is 50,000 evaluations
+
     /// Of a sum of independent parts every index is that part's share of the variance, first order and total.
     #[test]
     fn indices_of_a_sum(weights in prop::collection::vec(0.1..5.0f64, 2..6), seed in 0..1000u64) {
         let function = |point: &[f64]| Ok::<_, String>(vec![point.iter().zip(&weights).map(|(x, w)| w * x).sum()]);
-        let settings = SobolSettings { samples: 256, replicates: 4, seed };
+        let settings = SobolSettings { samples: 1024, replicates: 8, seed };
         let shares = sobol_indices(weights.len(), 1, &[0..1], settings, function).unwrap().remove(0);
         let whole: f64 = weights.iter().map(|w| w * w).sum();
         for (weight, indices) in weights.iter().zip(shares.indices.unwrap()) {
-            // A scrambled sequence of 256 points integrates a product of two lines to about 1e-3.
+            // Independent points would leave √(S/8192), a hundredth for S = 1; the sequence leaves less.
             prop_assert!((indices.first_order.value - weight * weight / whole).abs() < 2e-2);
             prop_assert!((indices.total.value - weight * weight / whole).abs() < 2e-2);
         }

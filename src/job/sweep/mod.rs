@@ -36,7 +36,7 @@ use crate::parameter::Spread;
 use crate::sensitivity::SobolSettings;
 
 /// Most readings of a grid.
-const MOST_READINGS: f64 = 2e7;
+const MOST_READINGS: f64 = 1e7;
 
 /// Runs the sweep of a job's main case, with these parameters set to other values than the job's own.
 ///
@@ -78,7 +78,7 @@ fn plan(job: &Job, set: &Values) -> Result<Plan, JobError> {
     let (mut cases, inputs) = job.cases()?;
     let case = cases.swap_remove(0);
     let axes = grid::axes(&file.grid, case.residuals().parameters(), &case.assignments)?;
-    let forward = Forward::new(&case, set, least_roughness(&case, &axes))?;
+    let forward = Forward::new(&case, set, least_roughness(&case, &axes, set))?;
     check_size(&axes, forward.reading_count())?;
     let free = free_ranges(&case, &forward);
     let sobol = match (&file.sobol, free.is_empty()) {
@@ -162,15 +162,18 @@ fn run(job: &Job, set: &Values) -> Result<Sweep, JobError> {
     Ok(result)
 }
 
-/// The smallest roughness that the sweep asks for, where it moves the roughness at all.
-fn least_roughness(case: &CheckedCase, axes: &[SweepAxis]) -> Option<f64> {
-    let axis = axes.iter().find(|axis| axis.parameter.name == "roughness")?;
-    let of_job = match case.assignments[axis.index].role {
+/// The smallest roughness that will be asked for, where the sweep or the command line moves the roughness at all.
+fn least_roughness(case: &CheckedCase, axes: &[SweepAxis], set: &Values) -> Option<f64> {
+    const ROUGHNESS: &str = "roughness";
+    let swept = axes.iter().filter(|axis| axis.parameter.name == ROUGHNESS).flat_map(|axis| &axis.values);
+    let moved = swept.chain(set.get(ROUGHNESS)).copied().reduce(f64::min)?;
+    let parameters = case.residuals().parameters();
+    let index = parameters.iter().position(|parameter| parameter.name == ROUGHNESS)?;
+    Some(moved.min(match case.assignments[index].role {
         Role::Free { lower, .. } => lower,
         Role::Fixed(value) => value,
-        Role::Tied { .. } => axis.parameter.lower,
-    };
-    Some(axis.values.iter().copied().fold(of_job, f64::min))
+        Role::Tied { .. } => parameters[index].lower,
+    }))
 }
 
 fn check_size(axes: &[SweepAxis], readings: usize) -> Result<(), JobError> {

@@ -29,7 +29,7 @@ pub(super) fn settings(file: &SobolFile, inputs: usize, readings: usize) -> Resu
     let cost = f64::from(samples) * f64::from(replicates) * (inputs as f64 + 2.0) * readings as f64;
     if cost > MOST_READINGS {
         let problem = format!(
-            "{samples} points in {replicates} sequences for {inputs} free parameters and {readings} readings make \
+            "{samples} points, {replicates} times over, for {inputs} free parameters and {readings} readings make \
              {cost:.1e} readings, more than {MOST_READINGS:e}; take fewer points, or fewer readings"
         );
         return Err(JobError::key("sweep.sobol.samples", problem));
