@@ -53,13 +53,15 @@ impl Forward {
         let problem = spectra_problem(&file, table, &vec![true; table.spectra.len()])?;
         let mut assignments = case.assignments.clone();
         for (name, &value) in set {
-            let index = checked(problem.parameters(), name, value)
+            let places = checked(problem.parameters(), name, value)
                 .map_err(|problem| JobError::Option { option: "--set", problem: format!("{name}: {problem}") })?;
-            assignments[index].role = match assignments[index].role {
-                // A free parameter keeps its range.
-                Role::Free { lower, upper, .. } => Role::Free { start: value, lower, upper },
-                Role::Fixed(_) | Role::Tied { .. } => Role::Fixed(value),
-            };
+            for index in places {
+                assignments[index].role = match assignments[index].role {
+                    // A free parameter keeps its range.
+                    Role::Free { lower, upper, .. } => Role::Free { start: value, lower, upper },
+                    Role::Fixed(_) | Role::Tied { .. } => Role::Fixed(value),
+                };
+            }
         }
         let views = table.spectra.iter().map(|spectrum| View {
             id: spectrum.id.clone(),

@@ -29,7 +29,7 @@ use self::variance::{FreeRange, settings, variance};
 use super::case::CheckedCase;
 use super::file::ParameterFile;
 use super::model_note::model_note;
-use super::values::Values;
+use super::values::{Values, said_of};
 use super::{InputFile, Job, JobError};
 use crate::fit::Role;
 use crate::parameter::Spread;
@@ -196,7 +196,7 @@ fn free_ranges(case: &CheckedCase, forward: &Forward) -> Vec<FreeRange> {
     let roles = forward.parameters().iter().zip(&forward.assignments).enumerate();
     roles
         .filter_map(|(index, (parameter, assignment))| {
-            let is_typed = matches!(case.file.parameters.get(&parameter.name), Some(ParameterFile::Free(_)));
+            let is_typed = matches!(said_of(&case.file.parameters, &parameter.name), Some(ParameterFile::Free(_)));
             match assignment.role {
                 Role::Free { lower, upper, .. } if is_typed => {
                     let spread = if lower > 0.0 { parameter.spread } else { Spread::Linear };
