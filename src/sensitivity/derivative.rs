@@ -114,19 +114,19 @@ pub fn derivative<E>(
     let mut step = first_step;
     for _ in 0..LEVELS {
         if side != Side::Below {
-            above_by_level.push(Probe::new((at + step).min(range.upper), at, &call)?);
+            above_by_level.push(Probe::new((at + step).min(range.upper), at, call)?);
         }
         if side != Side::Above {
-            below_by_level.push(Probe::new((at - step).max(range.lower), at, &call)?);
+            below_by_level.push(Probe::new((at - step).max(range.lower), at, call)?);
         }
         step /= 2.0;
     }
     let mut result = Derivative { slopes: Vec::new(), errors: Vec::new(), steps: Vec::new(), kinks: Vec::new(), side };
-    for component in 0..here.len() {
+    for (component, &value_here) in here.iter().enumerate() {
         let one_sided = |probes: &[Probe]| {
             let slopes = probes.iter().map(|probe| {
-                let change = probe.values[component] - here[component];
-                let size = here[component].abs().max(probe.values[component].abs());
+                let change = probe.values[component] - value_here;
+                let size = value_here.abs().max(probe.values[component].abs());
                 Slope { value: change / probe.step, step: probe.step.abs(), size }
             });
             extrapolated(&slopes.collect::<Vec<_>>(), 1)

@@ -9,11 +9,11 @@
 //! total        T_i = ½ ⟨(f(A) − f(A_Bⁱ))²⟩              Jansen 1999, Computer Physics Communications 117:35
 //! ```
 //!
-//! A and B are the two halves of a point of twice as many dimensions, and A_Bⁱ is A with coordinate i of B. f is taken from
-//! its mean first, which leaves V_i what it is and its error smaller. Points come from Sobol's sequence with nested uniform
+//! A and B are the two halves of a point of twice as many dimensions, and `A_Bⁱ` is A with coordinate i of B. f is taken from
+//! its mean first, which leaves `V_i` what it is and its error smaller. Points come from Sobol's sequence with nested uniform
 //! scrambling (Burley 2020, Journal of Computer Graphics Techniques 9(4):1). The sequence is repeated under independent
 //! scrambles; each index is the ratio of means over all of them, and its standard error is the jackknife's, leaving out one
-//! scramble at a time. Indices of several outputs together are Σ V_i / Σ V over the outputs (Lamboni et al. 2011,
+//! scramble at a time. Indices of several outputs together are `Σ V_i / Σ V` over the outputs (Lamboni et al. 2011,
 //! Reliability Engineering & System Safety 96:450).
 
 use std::ops::Range;
@@ -133,7 +133,7 @@ struct Sums {
     /// Σ (f(A) + f(B)) and Σ (f(A)² + f(B)²).
     both: Vec<f64>,
     both_squared: Vec<f64>,
-    /// For each input: Σ f(B) (f(A_Bⁱ) − f(A)), Σ (f(A_Bⁱ) − f(A)), Σ (f(A_Bⁱ) − f(A))².
+    /// For each input: `Σ f(B) (f(A_Bⁱ) − f(A))`, `Σ (f(A_Bⁱ) − f(A))`, `Σ (f(A_Bⁱ) − f(A))²`.
     product: Vec<Vec<f64>>,
     change: Vec<Vec<f64>>,
     change_squared: Vec<Vec<f64>>,
@@ -198,7 +198,7 @@ impl Sums {
         }
     }
 
-    /// Variance, and V_i and T_i of each input, summed over a group of outputs.
+    /// Variance, and `V_i` and `T_i` of each input, summed over a group of outputs.
     fn variances(&self, group: Range<usize>, samples: f64) -> Variances {
         let mut result = Variances { whole: 0.0, first_order: vec![0.0; self.product.len()], total: Vec::new() };
         result.total.clone_from(&result.first_order);

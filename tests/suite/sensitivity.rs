@@ -5,6 +5,14 @@ use std::f64::consts::PI;
 use barbule::sensitivity::{DerivativeError, Estimate, Indices, Range, Side, SobolSettings, derivative, sobol_indices};
 use proptest::prelude::*;
 
+/// A name, a function, and two numbers that are known of it.
+type Known = (&'static str, fn(f64) -> f64, f64, f64);
+
+/// The only output, as a group.
+fn alone() -> Vec<std::ops::Range<usize>> {
+    std::iter::once(0..1).collect()
+}
+
 /// The function as one that never fails.
 fn sure(function: impl Fn(f64) -> f64) -> impl Fn(f64) -> Result<Vec<f64>, String> {
     move |x| Ok(vec![function(x)])
@@ -13,7 +21,7 @@ fn sure(function: impl Fn(f64) -> f64) -> impl Fn(f64) -> Result<Vec<f64>, Strin
 #[test]
 fn slopes_of_known_functions() {
     let wide = Range { lower: -10.0, upper: 10.0, size: 1.0 };
-    let cases: [(&str, fn(f64) -> f64, f64, f64); 5] = [
+    let cases: [Known; 5] = [
         ("exp", f64::exp, 1.0, 1f64.exp()),
         ("sin 20x", |x| (20.0 * x).sin(), 0.3, 20.0 * 6f64.cos()),
         ("1/(1 + x²)", |x| 1.0 / (1.0 + x * x), 0.5, -0.64),
@@ -50,14 +58,14 @@ fn at_an_end_of_the_range_differences_go_inwards() {
 #[test]
 fn a_kink_is_seen_and_its_error_reaches_over_both_slopes() {
     let range = Range { lower: -1.0, upper: 1.0, size: 1.0 };
-    let cases: [(fn(f64) -> f64, f64, f64); 3] = [
-        (f64::abs, 0.0, 1.0),
-        (|x| x.max(0.0), 0.5, 0.5),
-        (|x| if x > 0.0 { x.sin() } else { 3.0 * x.sin() }, 2.0, 1.0),
+    let cases: [Known; 3] = [
+        ("|x|", f64::abs, 0.0, 1.0),
+        ("max(x, 0)", |x| x.max(0.0), 0.5, 0.5),
+        ("sines of two slopes", |x| if x > 0.0 { x.sin() } else { 3.0 * x.sin() }, 2.0, 1.0),
     ];
-    for (function, mean, half_gap) in cases {
+    for (name, function, mean, half_gap) in cases {
         let found = derivative(sure(function), 0.0, range).unwrap();
-        assert!(found.kinks[0]);
+        assert!(found.kinks[0], "{name}");
         approx::assert_abs_diff_eq!(found.slopes[0], mean, epsilon = 1e-9); // extrapolated sines
         approx::assert_abs_diff_eq!(found.errors[0], half_gap, epsilon = 1e-9);
     }
@@ -133,7 +141,7 @@ fn indices_of_ishigamis_function() {
         approx::assert_abs_diff_eq!(*found, printed, epsilon = 5e-5); // four decimals
     }
     let settings = SobolSettings { samples: 4096, replicates: 16, seed: 20_261_126 };
-    let shares = sobol_indices(3, 1, &[0..1], settings, ishigami).unwrap().remove(0);
+    let shares = sobol_indices(3, 1, &alone(), settings, ishigami).unwrap().remove(0);
     // Mean a/2, variance as above.
     approx::assert_abs_diff_eq!(shares.mean, 3.5, epsilon = 1e-2);
     let variance = A * A / 8.0 + B * PI.powi(4) / 5.0 + B * B * PI.powi(8) / 18.0 + 0.5;
@@ -155,14 +163,14 @@ fn indices_of_a_product() {
     let parts = importance.map(|a: f64| 1.0 / (3.0 * (1.0 + a).powi(2)));
     let all: f64 = parts.iter().map(|part| 1.0 + part).product();
     let settings = SobolSettings { samples: 2048, replicates: 16, seed: 7 };
-    let shares = sobol_indices(4, 1, &[0..1], settings, function).unwrap().remove(0);
+    let shares = sobol_indices(4, 1, &alone(), settings, function).unwrap().remove(0);
     for ((part, indices), what) in parts.iter().zip(shares.indices.unwrap()).zip(["1", "2", "3", "4"]) {
         assert_within(indices.first_order, part / (all - 1.0), 1e-2, what);
         assert_within(indices.total, part * (all / (1.0 + part)) / (all - 1.0), 1e-2, what);
     }
 }
 
-/// Two additive outputs together: Σ V_i / Σ V. Of 3x and y the variances are 9/12 and 1/12.
+/// Two additive outputs together: `Σ V_i / Σ V`. Of 3x and y the variances are 9/12 and 1/12.
 #[test]
 fn indices_of_several_outputs_together() {
     let function = |point: &[f64]| Ok::<_, String>(vec![5.0, 3.0 * point[0], point[1]]);
@@ -185,7 +193,7 @@ fn errors_are_as_large_as_they_say() {
     let mut inside = [0; 6];
     for seed in 0..seeds {
         let settings = SobolSettings { samples: 64, replicates, seed };
-        let shares = sobol_indices(3, 1, &[0..1], settings, ishigami).unwrap().remove(0);
+        let shares = sobol_indices(3, 1, &alone(), settings, ishigami).unwrap().remove(0);
         for (input, Indices { first_order: first, total: all }) in shares.indices.unwrap().into_iter().enumerate() {
             for (place, estimate, truth) in [(input, first, first_order[input]), (input + 3, all, total[input])] {
                 // Student's t of 15 degrees of freedom at 97.5 %.
@@ -202,7 +210,7 @@ fn indices_do_not_depend_on_the_number_of_threads_but_on_the_seed() {
     let with = |threads: usize, seed: u64| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let settings = SobolSettings { samples: 128, replicates: 4, seed };
-        pool.install(|| sobol_indices(3, 1, &[0..1], settings, ishigami).unwrap())
+        pool.install(|| sobol_indices(3, 1, &alone(), settings, ishigami).unwrap())
     };
     assert_eq!(with(1, 5), with(3, 5));
     assert_ne!(with(1, 5), with(1, 6));
@@ -212,7 +220,7 @@ fn indices_do_not_depend_on_the_number_of_threads_but_on_the_seed() {
 fn a_function_that_refuses_a_point_says_so() {
     let settings = SobolSettings { samples: 16, replicates: 4, seed: 1 };
     let refuses = |point: &[f64]| if point[0] > 0.9 { Err("too much".to_owned()) } else { Ok(vec![point[0]]) };
-    assert_eq!(sobol_indices(1, 1, &[0..1], settings, refuses), Err("too much".to_owned()));
+    assert_eq!(sobol_indices(1, 1, &alone(), settings, refuses), Err("too much".to_owned()));
 }
 
 proptest! {
@@ -223,7 +231,7 @@ proptest! {
     fn indices_of_a_sum(weights in prop::collection::vec(0.1..5.0f64, 2..6), seed in 0..1000u64) {
         let function = |point: &[f64]| Ok::<_, String>(vec![point.iter().zip(&weights).map(|(x, w)| w * x).sum()]);
         let settings = SobolSettings { samples: 1024, replicates: 8, seed };
-        let shares = sobol_indices(weights.len(), 1, &[0..1], settings, function).unwrap().remove(0);
+        let shares = sobol_indices(weights.len(), 1, &alone(), settings, function).unwrap().remove(0);
         let whole: f64 = weights.iter().map(|w| w * w).sum();
         for (weight, indices) in weights.iter().zip(shares.indices.unwrap()) {
             // Independent points would leave √(S/8192), a hundredth for S = 1; the sequence leaves less.

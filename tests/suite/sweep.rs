@@ -45,7 +45,7 @@ fn close(found: f64, expected: f64, relative: f64) {
     assert!(off <= relative * expected.abs(), "found {found}, expected {expected}, off by {off:e}");
 }
 
-/// L* of a grey and the weight S_L of a difference around it (CIE 15:2018; Sharma, Wu and Dalal 2005, eq. 15).
+/// L* of a grey and the weight `S_L` of a difference around it (CIE 15:2018; Sharma, Wu and Dalal 2005, eq. 15).
 fn lightness(albedo: f64) -> f64 {
     116.0 * albedo.cbrt() - 16.0
 }

@@ -31,7 +31,7 @@ impl ColourMaker {
         if views.iter().all(is_channels) {
             return Self::Channels;
         }
-        match views.iter().find_map(|view| why_colourless(view)) {
+        match views.iter().find_map(why_colourless) {
             Some(reason) => Self::None(reason),
             None => Self::Spectra,
         }

@@ -37,15 +37,16 @@ pub(super) fn excursion(
     index: usize,
     (range, spread): ([f64; 2], Spread),
 ) -> Result<Excursion, JobError> {
-    let mut shares: Vec<f64> = (0..POINTS).map(|point| f64::from(point) / f64::from(POINTS - 1)).collect();
+    let point = |point: u32| f64::from(point) / f64::from(POINTS - 1);
+    let mut points: Vec<(f64, f64)> =
+        (0..POINTS).map(point).map(|share| (share, place(range, spread, share))).collect();
     // The job's own value too, where it lies inside: there the difference is 0.
     let own_share = share(range, spread, forward.own[index]);
-    if (0.0..=1.0).contains(&own_share) && !shares.contains(&own_share) {
-        shares.push(own_share);
-        shares.sort_by(f64::total_cmp);
+    if (0.0..=1.0).contains(&own_share) {
+        let after = points.partition_point(|(share, _)| *share < own_share);
+        points.insert(after, (own_share, forward.own[index]));
     }
-    let value = |share: &f64| if *share == own_share { forward.own[index] } else { place(range, spread, *share) };
-    let values: Vec<f64> = shares.iter().map(value).collect();
+    let (shares, values): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
     let at_values: Vec<_> = values.par_iter().map(|value| forward.readings(&[(index, *value)])).collect();
     let mut differences = vec![Vec::new(); own.colours.len()];
     let mut changes = vec![Vec::new(); forward.views.len()];

@@ -104,7 +104,7 @@ fn length(lab: Lab, change: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// On the grey axis ΔE2000 of a change in lightness alone is ΔL*/S_L with the S_L of Sharma, Wu and Dalal (2005).
+    /// On the grey axis ΔE2000 of a change in lightness alone is `ΔL*/S_L` with the `S_L` of Sharma, Wu and Dalal (2005).
     #[test]
     fn the_length_of_a_change_in_lightness_is_known() {
         for l in [10.0, 50.0, 90.0] {
