@@ -10,6 +10,7 @@ mod film_peaks;
 mod held_out;
 mod json;
 mod load;
+mod lobes;
 mod model_note;
 mod models;
 mod outcome;
@@ -31,10 +32,11 @@ pub use draft::draft;
 pub use error::JobError;
 pub use file::{AlternativeFile, DataFile, FreeFile, JobFile, ModelFile, ParameterFile, PriorFile, SyntheticFile};
 pub use load::Job;
+pub use lobes::{ModelLobes, model_lobes};
 pub use models::{ModelEntry, models};
 pub use outcome::{
-    Case, CaseData, Comparison, ComparisonRow, HeldOut, InputFile, ModelNote, Outcome, PeakFit, Prediction,
-    SpectrumFit, Support, ThicknessOrder, Truth,
+    Case, CaseData, Comparison, ComparisonRow, HeldOut, InputFile, LightLobes, Lobes, ModelNote, Outcome, PeakFit,
+    Prediction, SpectrumFit, Support, ThicknessOrder, Truth,
 };
 pub use run::run;
 pub use schema::schemas;

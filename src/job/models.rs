@@ -11,6 +11,7 @@ use crate::bsdf::{
     RoughPlastic,
 };
 use crate::measure::{PeakModel, ThinFilmLaw};
+use crate::nearest::suggestion;
 use crate::optics::Reference;
 use crate::parameter::Parameter;
 
@@ -258,11 +259,29 @@ pub struct ModelEntry {
 /// Wavelength for which a listing declares its parameters; only scan steps hang on it.
 const LISTING_NM: f64 = 500.0;
 
-/// Every model that a job can name.
-pub fn models() -> Result<Vec<ModelEntry>, JobError> {
-    let entry = |card: &&ModelCard| {
-        let model: ModelFile = toml::from_str(card.example)
-            .map_err(|error| JobError::key(format!("example of {}", card.kind), error.to_string()))?;
+/// The cards of all models, or of the one named.
+fn cards(kind: Option<&str>) -> Result<Vec<&'static ModelCard>, JobError> {
+    let Some(kind) = kind else { return Ok(CARDS.to_vec()) };
+    CARDS.iter().find(|card| card.kind == kind).map(|card| vec![*card]).ok_or_else(|| {
+        let known: Vec<&str> = CARDS.iter().map(|card| card.kind).collect();
+        let meant = suggestion(kind, known.iter().copied());
+        JobError::Option { option: "MODEL", problem: format!("found `{kind}`; known are {}{meant}", known.join(", ")) }
+    })
+}
+
+fn example(card: &ModelCard) -> Result<ModelFile, JobError> {
+    toml::from_str(card.example).map_err(|error| JobError::key(format!("example of {}", card.kind), error.to_string()))
+}
+
+/// The example of every model, or of the one named.
+pub(super) fn examples(kind: Option<&str>) -> Result<Vec<(&'static str, ModelFile)>, JobError> {
+    cards(kind)?.into_iter().map(|card| Ok((card.kind, example(card)?))).collect()
+}
+
+/// Every model that a job can name, or the one named.
+pub fn models(kind: Option<&str>) -> Result<Vec<ModelEntry>, JobError> {
+    let entry = |card: &'static ModelCard| {
+        let model = example(card)?;
         let parameters = match &model {
             ModelFile::ThinFilmLaw(design) => ThinFilmLaw::new(design.clone(), LISTING_NM).parameters().to_vec(),
             _ => model.scattering(&[LISTING_NM])?.parameters().to_vec(),
@@ -274,7 +293,7 @@ pub fn models() -> Result<Vec<ModelEntry>, JobError> {
             parameters,
         })
     };
-    CARDS.iter().map(entry).collect()
+    cards(kind)?.into_iter().map(entry).collect()
 }
 
 impl fmt::Display for ModelEntry {

@@ -73,10 +73,36 @@ pub struct Case {
     pub data: CaseData,
     /// How well readings of spectra that the fit did not see are predicted, where there are such.
     pub held_out: Option<HeldOut>,
+    /// What the model at its best values does with light from a few directions, where it scatters at all.
+    pub lobes: Option<Lobes>,
     /// Whether the data support a film, where the model has one and there are incidences to leave out.
     pub support: Option<Support>,
     /// Thickness for each order of interference, where the data (peaks alone) do not give the order.
     pub orders: Vec<ThicknessOrder>,
+}
+
+/// A model's BSDF for light from azimuth 0 and a few inclinations, 1/sr.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Lobes {
+    /// Wavelengths, nm, at most three.
+    pub wavelengths_nm: Vec<f64>,
+    /// Viewer's angles from the normal in the plane of incidence, degrees: positive on the mirror side, above 90 below the
+    /// surface, where the model lets light through.
+    pub angles_deg: Vec<f64>,
+    /// One an inclination of the light.
+    pub lights: Vec<LightLobes>,
+}
+
+/// The lobes for one inclination of the light.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct LightLobes {
+    /// Inclination of the light, degrees.
+    pub theta_i_deg: f64,
+    /// Values in the plane of incidence: one list a wavelength, in it one value an angle.
+    pub in_plane: Vec<Vec<f64>>,
+    /// Values for all viewers above the surface at the middle wavelength: rings of equal inclination from the normal outwards,
+    /// in each equal steps of azimuth from 0; a value is the mean over its cell.
+    pub hemisphere: Vec<Vec<f64>>,
 }
 
 /// Errors of prediction, model minus reading, at readings that the fit did not see.

@@ -5,6 +5,7 @@ use super::case::{CheckedCase, Comparison, extent};
 use super::file::ModelFile;
 use super::film_peaks::FilmPeaks;
 use super::held_out::{comparison, held_out};
+use super::lobes::lobes_of_fit;
 use super::model_note::model_note;
 use super::outcome::{Case, CaseData, Outcome, PeakFit, Prediction, SpectrumFit, ThicknessOrder, Truth};
 use super::peaks::PeaksProblem;
@@ -43,6 +44,12 @@ pub fn run(job: &Job, control: &Control) -> Result<Outcome, JobError> {
 fn run_case(case: &CheckedCase, control: &Control) -> Result<Case, JobError> {
     let found = case.fit(control)?;
     let support = film_support(case, &found, control)?;
+    let lobes = match &case.comparison {
+        Comparison::Spectra(table, fitted, _) => {
+            Some(lobes_of_fit(&case.file, table, fitted, &values_by_name(&found))?)
+        }
+        Comparison::Peaks(..) => None,
+    };
     let (data, orders) = match &case.comparison {
         Comparison::Spectra(table, fitted, _) => (spectra_data(&case.file, table, fitted, &found)?, Vec::new()),
         Comparison::Peaks(table, fitted, problem) => {
@@ -63,6 +70,7 @@ fn run_case(case: &CheckedCase, control: &Control) -> Result<Case, JobError> {
         model: model_note(case)?,
         fit: found,
         held_out: held_out(&data),
+        lobes,
         data,
         support,
         orders,

@@ -3,6 +3,7 @@
 //! A plot builds a [`Figure`] and nothing else. Its picture ([`super::layout`]) and its table of numbers
 //! ([`super::curves`]) are both made from it, so that a drawn curve cannot be missing from the tables.
 
+use super::disc::Disc;
 use super::palette::{Colour, Scale};
 
 /// Width in page pixels of a figure that fills the page.
@@ -65,6 +66,8 @@ pub(crate) enum Layer {
     Series(Series),
     Map(Map),
     ColourCells(ColourCells),
+    /// A chart around a point; it stands alone, and its chart's axes are not drawn.
+    Disc(Disc),
     /// A thin line across the chart at this y.
     Level(f64),
     /// A short text above a point; left out where it would cover another.
@@ -133,6 +136,19 @@ pub(crate) struct ColourCells {
     pub(crate) rows: Vec<Vec<Colour>>,
     /// What a table calls the colours.
     pub(crate) label: String,
+}
+
+impl Chart {
+    /// A chart around a point, without axes.
+    pub(crate) fn disc(height: f64, disc: Disc) -> Self {
+        let none = || Axis::bands("", Vec::new());
+        Self { x: none(), y: none(), height, layers: vec![Layer::Disc(disc)] }
+    }
+
+    /// What is drawn around a point, where the chart is of that kind.
+    pub(crate) fn as_disc(&self) -> Option<&Disc> {
+        self.layers.iter().find_map(|layer| if let Layer::Disc(disc) = layer { Some(disc) } else { None })
+    }
 }
 
 impl Axis {

@@ -2,7 +2,9 @@
 
 use plotters::style::RGBColor;
 
-use super::chart::{AxisKind, Chart, ColourCells, Figure, Layer, Map, Series};
+use super::chart::{AxisKind, Chart, ColourCells, Figure, Layer, Map, Series, length};
+use super::disc::{Disc, Dome};
+use super::layout::series_of;
 
 /// A table of a figure's numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,10 +31,13 @@ pub(crate) fn tables(figure: &Figure) -> Result<Vec<CurveTable>, csv::Error> {
     let mut tables = Vec::new();
     for (index, (x, y)) in kinds.iter().enumerate() {
         let same: Vec<_> = charts.iter().filter(|(_, c)| c.x.label == *x && c.y.label == *y).copied().collect();
-        let csv = match (first_map(&same), first_colours(&same)) {
-            (Some(map), _) => map_table(&same, x, y, &map.label)?,
-            (None, Some(cells)) => colour_table(&same, x, y, &cells.label)?,
-            (None, None) => curve_table(&same, x, y)?,
+        let disc = same.iter().find_map(|(_, chart)| chart.as_disc());
+        let csv = match (first_map(&same), first_colours(&same), disc) {
+            (Some(map), ..) => map_table(&same, x, y, &map.label)?,
+            (None, Some(cells), _) => colour_table(&same, x, y, &cells.label)?,
+            (None, None, Some(Disc::Dome(dome))) => dome_table(&same, dome)?,
+            (None, None, Some(Disc::Lobes(lobes))) => curve_table(&same, ANGLE, &lobes.label)?,
+            (None, None, None) => curve_table(&same, x, y)?,
         };
         let suffix = if index == 0 { String::new() } else { format!("-{}", index + 1) };
         tables.push(CurveTable { file: format!("{}{suffix}.csv", figure.name), csv });
@@ -40,12 +45,13 @@ pub(crate) fn tables(figure: &Figure) -> Result<Vec<CurveTable>, csv::Error> {
     Ok(tables)
 }
 
+/// What the curves of lobes run over.
+const ANGLE: &str = "viewer's angle from the normal, mirror side positive (°)";
+
 fn curve_table(charts: &[(&str, &Chart)], x: &str, y: &str) -> Result<String, csv::Error> {
     let series: Vec<(&str, &Series)> = charts
         .iter()
-        .flat_map(|(panel, chart)| {
-            chart.layers.iter().filter_map(|l| if let Layer::Series(s) = l { Some((*panel, s)) } else { None })
-        })
+        .flat_map(|(panel, chart)| chart.layers.iter().flat_map(series_of).map(|series| (*panel, series)))
         .collect();
     let has_errors = series.iter().any(|(_, s)| s.points.iter().any(|p| p.error.is_some()));
     let mut writer = csv::Writer::from_writer(Vec::new());
@@ -97,6 +103,24 @@ fn colour_table(charts: &[(&str, &Chart)], x: &str, y: &str, colour: &str) -> Re
                     &column_name(chart, &cells.borders, column),
                     &hex,
                 ])?;
+            }
+        }
+    }
+    finished(writer)
+}
+
+/// One row a cell of a hemisphere, by the angles of its middle.
+fn dome_table(charts: &[(&str, &Chart)], first: &Dome) -> Result<String, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["panel", "viewer's inclination (°)", "viewer's azimuth (°)", first.colours.label.as_str()])?;
+    for (panel, chart) in charts {
+        let Some(Disc::Dome(dome)) = chart.as_disc() else { continue };
+        let middle = |index: usize, count: usize, range: f64| written(range * (length(index) + 0.5) / length(count));
+        for (index, ring) in dome.rings.iter().enumerate() {
+            let inclination = middle(index, dome.rings.len(), 90.0);
+            for (place, value) in ring.iter().enumerate() {
+                let azimuth = middle(place, ring.len(), 360.0);
+                writer.write_record([*panel, inclination.as_str(), azimuth.as_str(), written(*value).as_str()])?;
             }
         }
     }

@@ -2,23 +2,24 @@
 
 use super::chart::{Axis, AxisKind, Cell, Chart, Figure, Layer, Look, Map, Mark, Point, Series, length};
 use super::colour_cells;
+use super::disc::{self, Disc};
 use super::frame::{Frame, clipped, thinned};
-use super::palette::{BLACK, Colour, GREY, INK, PALE, Scale, WHITE, is_light};
+use super::map::{colour_bar, lay_map};
+use super::palette::{Colour, GREY, INK, PALE, WHITE};
 use super::plot::{Align, Drawing, Shape, text_width};
 use super::ticks::{Tick, linear, logarithmic, whole};
 
 const TITLE_SIZE: f64 = 14.0;
 const CELL_TITLE_SIZE: f64 = 12.0;
-const LABEL_SIZE: f64 = 12.0;
-const TICK_SIZE: f64 = 11.0;
+pub(super) const LABEL_SIZE: f64 = 12.0;
+pub(super) const TICK_SIZE: f64 = 11.0;
 const MARGIN: f64 = 4.0;
 const TITLE_HEIGHT: f64 = 26.0;
 const CELL_TITLE_HEIGHT: f64 = 20.0;
 const LEGEND_ROW_HEIGHT: f64 = 20.0;
-const TICK_LENGTH: f64 = 4.0;
-const TICK_ROW_HEIGHT: f64 = 18.0;
-const LABEL_ROW_HEIGHT: f64 = 18.0;
-const BAR_HEIGHT: f64 = 10.0;
+pub(super) const TICK_LENGTH: f64 = 4.0;
+pub(super) const TICK_ROW_HEIGHT: f64 = 18.0;
+pub(super) const LABEL_ROW_HEIGHT: f64 = 18.0;
 const GAP: f64 = 10.0;
 /// Right of a frame, for the half of the last tick's label that stands beyond it.
 const RIGHT_ROOM: f64 = 14.0;
@@ -73,11 +74,8 @@ pub(crate) fn drawing(figure: &Figure) -> Drawing {
 /// Writes the legend from `top` down and returns where it ends. One entry a name; none where there is only one series.
 fn legend(figure: &Figure, top: f64, shapes: &mut Vec<Shape>) -> f64 {
     let mut entries: Vec<&Series> = Vec::new();
-    for layer in figure.cells.iter().flat_map(|c| &c.charts).flat_map(|c| &c.layers) {
-        if let Layer::Series(series) = layer
-            && !series.points.is_empty()
-            && !entries.iter().any(|e| e.name == series.name)
-        {
+    for series in figure.cells.iter().flat_map(|c| &c.charts).flat_map(|c| &c.layers).flat_map(series_of) {
+        if !series.points.is_empty() && !entries.iter().any(|e| e.name == series.name) {
             entries.push(series);
         }
     }
@@ -97,6 +95,15 @@ fn legend(figure: &Figure, top: f64, shapes: &mut Vec<Shape>) -> f64 {
         x += width;
     }
     y + LEGEND_ROW_HEIGHT
+}
+
+/// The curves of a layer.
+pub(super) fn series_of(layer: &Layer) -> &[Series] {
+    match layer {
+        Layer::Series(series) => std::slice::from_ref(series),
+        Layer::Disc(Disc::Lobes(chart)) => &chart.curves,
+        _ => &[],
+    }
 }
 
 fn sample(look: Look, (x, y): (f64, f64), shapes: &mut Vec<Shape>) {
@@ -149,7 +156,12 @@ fn lay_cell(cell: &Cell, place: CellPlace, shapes: &mut Vec<Shape>) -> f64 {
             shapes.push(text(label, at, LABEL_SIZE, Align::Middle).upwards());
         }
         top = frame.bottom;
-        if is_last {
+        if let Some(disc) = chart.as_disc() {
+            top += 2.0;
+            if let Disc::Dome(dome) = disc {
+                top = disc::colour_bar(dome, frame, top, shapes);
+            }
+        } else if is_last {
             x_ticks(&chart.x, frame, shapes);
             top += TICK_LENGTH + TICK_ROW_HEIGHT;
             if place.names_x {
@@ -169,6 +181,9 @@ fn lay_cell(cell: &Cell, place: CellPlace, shapes: &mut Vec<Shape>) -> f64 {
 }
 
 fn lay_chart(chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
+    if let Some(disc) = chart.as_disc() {
+        return disc::lay(disc, frame, shapes);
+    }
     let has_map = first_map(chart).is_some();
     if !has_map {
         for tick in ticks(&chart.y, frame.height() / 30.0) {
@@ -184,6 +199,8 @@ fn lay_chart(chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
             Layer::Series(series) => lay_series(series, chart, frame, shapes),
             Layer::Map(map) => lay_map(map, chart, frame, shapes),
             Layer::ColourCells(cells) => colour_cells::lay(cells, chart, frame, shapes),
+            // Stands alone, see above.
+            Layer::Disc(_) => {}
             Layer::Level(at) => {
                 if let Some(y) = place_y(&chart.y, *at, frame) {
                     shapes.push(line(&[(frame.left, y), (frame.right, y)], GREY, 1.0));
@@ -255,96 +272,7 @@ fn lay_series(series: &Series, chart: &Chart, frame: Frame, shapes: &mut Vec<Sha
     }
 }
 
-fn lay_map(map: &Map, chart: &Chart, frame: Frame, shapes: &mut Vec<Shape>) {
-    for (index, row) in map.rows.iter().enumerate() {
-        let (Some(one), Some(other)) = (y_of(&chart.y, length(index), frame), y_of(&chart.y, length(index + 1), frame))
-        else {
-            continue;
-        };
-        let (top, bottom) = (one.min(other), one.max(other));
-        let border = |column: usize| map.borders.get(column).and_then(|b| x_of(&chart.x, *b, frame));
-        // Neighbours of one colour become one rectangle: a smooth map is then a tenth of its size.
-        let mut column = 0;
-        while column < row.len() {
-            let colour = row[column].map(|v| map.scale.colour(stepped(v, map.scale)));
-            let mut end = column + 1;
-            while !map.with_numbers
-                && end < row.len()
-                && row[end].map(|v| map.scale.colour(stepped(v, map.scale))) == colour
-            {
-                end += 1;
-            }
-            if let (Some(left), Some(right)) = (border(column), border(end)) {
-                // A little under its neighbours, which are drawn later, so that no seam shows between them.
-                let overlap = if map.with_numbers { 0.0 } else { 0.6 };
-                let (from, to) =
-                    ((left, top), ((right + overlap).min(frame.right), (bottom + overlap).min(frame.bottom)));
-                shapes.push(Shape::Rectangle { from, to, colour: colour.unwrap_or(PALE) });
-                match (colour, row[column]) {
-                    (Some(colour), Some(value)) if map.with_numbers => {
-                        let ink = if is_light(colour) { BLACK } else { WHITE };
-                        let number = crate::number::correlation(value, 2);
-                        let at = ((left + right) / 2.0, (top + bottom) / 2.0);
-                        shapes.push(text(number, at, TICK_SIZE, Align::Middle).coloured(ink));
-                    }
-                    (None, _) => hatch(from, to, shapes),
-                    _ => {}
-                }
-            }
-            column = end;
-        }
-    }
-}
-
-/// A value moved to the middle of one of 64 steps of the scale, more than an eye tells apart.
-fn stepped(value: f64, scale: Scale) -> f64 {
-    const STEPS: f64 = 64.0;
-    let (low, high) = scale.range();
-    let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
-    low + (high - low) * (share * STEPS).round() / STEPS
-}
-
-fn hatch(from: (f64, f64), to: (f64, f64), shapes: &mut Vec<Shape>) {
-    let (width, height) = (to.0 - from.0, to.1 - from.1);
-    let mut offset = 6.0;
-    while offset < width + height {
-        let start = (from.0 + offset.min(width), from.1 + (offset - width).max(0.0));
-        let end = (from.0 + (offset - height).max(0.0), from.1 + offset.min(height));
-        shapes.push(line(&[start, end], GREY, 0.7));
-        offset += 6.0;
-    }
-}
-
-/// Draws the bar of a map's colours below it and returns where it ends.
-fn colour_bar(map: &Map, frame: Frame, top: f64, shapes: &mut Vec<Shape>) -> f64 {
-    const STEPS: u32 = 64;
-    let (low, high) = map.scale.range();
-    let bar = Frame { left: frame.left, top, right: frame.right, bottom: top + BAR_HEIGHT };
-    for step in 0..STEPS {
-        let edge = |s: u32| bar.left + bar.width() * f64::from(s) / f64::from(STEPS);
-        let value = low + (high - low) * (f64::from(step) + 0.5) / f64::from(STEPS);
-        let colour = map.scale.colour(value);
-        shapes.push(Shape::Rectangle {
-            from: (edge(step), top),
-            to: ((edge(step + 1) + 0.6).min(bar.right), bar.bottom),
-            colour,
-        });
-    }
-    let axis = Axis::linear(map.label.clone(), (low, high));
-    x_ticks(&axis, bar, shapes);
-    let at = ((bar.left + bar.right) / 2.0, bar.bottom + TICK_LENGTH + TICK_ROW_HEIGHT + 5.0);
-    let label = shortened(&map.label, LABEL_SIZE, false, bar.width() + 40.0);
-    shapes.push(text(label, at, LABEL_SIZE, Align::Middle).into());
-    if map.clipped.is_empty() {
-        return at.1 + LABEL_ROW_HEIGHT / 2.0;
-    }
-    let below = (at.0, at.1 + LABEL_ROW_HEIGHT - 2.0);
-    let clipped = shortened(&map.clipped, TICK_SIZE, false, bar.width() + 40.0);
-    shapes.push(text(clipped, below, TICK_SIZE, Align::Middle).into());
-    below.1 + LABEL_ROW_HEIGHT / 2.0
-}
-
-fn x_ticks(axis: &Axis, frame: Frame, shapes: &mut Vec<Shape>) {
+pub(super) fn x_ticks(axis: &Axis, frame: Frame, shapes: &mut Vec<Shape>) {
     let mut free_from = f64::NEG_INFINITY;
     for tick in ticks(axis, frame.width() / 46.0) {
         let Some(x) = place_x(axis, tick.at, frame) else { continue };
@@ -432,7 +360,7 @@ fn place_y(axis: &Axis, value: f64, frame: Frame) -> Option<f64> {
 }
 
 /// A line, or its dashes.
-fn stroke(points: &[(f64, f64)], colour: Colour, width: f64, dashed: bool, shapes: &mut Vec<Shape>) {
+pub(super) fn stroke(points: &[(f64, f64)], colour: Colour, width: f64, dashed: bool, shapes: &mut Vec<Shape>) {
     const DASH: f64 = 5.0;
     const SPACE: f64 = 3.0;
     if !dashed {
@@ -465,7 +393,7 @@ fn stroke(points: &[(f64, f64)], colour: Colour, width: f64, dashed: bool, shape
     }
 }
 
-fn marker(centre: (f64, f64), mark: Mark, colour: Colour, open: bool, shapes: &mut Vec<Shape>) {
+pub(super) fn marker(centre: (f64, f64), mark: Mark, colour: Colour, open: bool, shapes: &mut Vec<Shape>) {
     let mut filled = |radius: f64, colour: Colour| {
         let corners: &[(f64, f64)] = match mark {
             Mark::Disc => {
@@ -484,19 +412,19 @@ fn marker(centre: (f64, f64), mark: Mark, colour: Colour, open: bool, shapes: &m
     }
 }
 
-fn line(points: &[(f64, f64)], colour: Colour, width: f64) -> Shape {
+pub(super) fn line(points: &[(f64, f64)], colour: Colour, width: f64) -> Shape {
     Shape::Line { points: points.to_vec(), colour, width }
 }
 
 /// A text on its way to become a shape.
-struct Writing {
+pub(super) struct Writing {
     text: String,
     at: (f64, f64),
     size: f64,
     align: Align,
 }
 
-fn text(text: String, at: (f64, f64), size: f64, align: Align) -> Writing {
+pub(super) fn text(text: String, at: (f64, f64), size: f64, align: Align) -> Writing {
     Writing { text, at, size, align }
 }
 
@@ -513,7 +441,7 @@ impl Writing {
         self.shape(INK, false, true)
     }
 
-    fn coloured(self, colour: Colour) -> Shape {
+    pub(super) fn coloured(self, colour: Colour) -> Shape {
         self.shape(colour, false, false)
     }
 }
@@ -525,7 +453,7 @@ impl From<Writing> for Shape {
 }
 
 /// The text, cut with an ellipsis where it is wider than there is room.
-fn shortened(text: &str, size: f64, bold: bool, room: f64) -> String {
+pub(super) fn shortened(text: &str, size: f64, bold: bool, room: f64) -> String {
     if text_width(text, size, bold) <= room {
         return text.to_owned();
     }

@@ -15,9 +15,11 @@ mod angles;
 mod chart;
 mod colour_cells;
 mod curves;
+mod disc;
 mod files;
 mod frame;
 mod layout;
+mod map;
 mod methods;
 mod page;
 mod palette;
@@ -32,7 +34,7 @@ mod ticks;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::job::{Case, Outcome};
+use crate::job::{Case, Lobes, Outcome};
 use chart::Figure;
 use plots::Place;
 
@@ -83,14 +85,24 @@ pub fn write_report(outcome: &Outcome, folder: &Path) -> Result<PathBuf, ReportE
 /// Writes each picture as SVG and PNG, and its numbers beside them.
 fn write_pictures<'a>(pictures: impl Iterator<Item = &'a Picture>, folder: &Path) -> Result<(), ReportError> {
     for picture in pictures {
-        let name = &picture.figure.name;
-        files::write(&folder.join("plots").join(format!("{name}.svg")), picture.svg.as_bytes())?;
-        files::write(&folder.join("plots").join(format!("{name}.png")), &picture.png)?;
-        for table in &picture.tables {
-            files::write(&folder.join("curves").join(&table.file), table.csv.as_bytes())?;
-        }
+        picture.write(folder)?;
     }
     Ok(())
+}
+
+/// Draws a model's lobes at some settings of its parameters into `folder`, as `plots/<name>-….png` and `.svg` with the numbers
+/// in `curves/`, and returns the paths of the PNG files.
+///
+/// # Errors
+///
+/// If a file cannot be written.
+pub fn write_lobes(name: &str, settings: &[(String, Lobes)], folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+    let draw = |mut figure: Figure| {
+        figure.name = format!("{name}-{}", figure.name);
+        figure.title = format!("{name} · {}", figure.title);
+        Picture::paint(figure)?.write(folder)
+    };
+    plots::lobes::figures(settings).into_iter().map(draw).collect()
 }
 
 /// The pictures of one case, each with its place on the page.
@@ -137,5 +149,16 @@ impl Picture {
         let png = plot::png(&drawing).map_err(|e| failed(&e))?;
         let tables = curves::tables(&figure).map_err(|e| failed(&e))?;
         Ok(Self { figure, svg, png, tables })
+    }
+
+    /// Writes the SVG, the PNG and the numbers, and returns the path of the PNG.
+    fn write(&self, folder: &Path) -> Result<PathBuf, ReportError> {
+        let plot = |ending: &str| folder.join("plots").join(format!("{}.{ending}", self.figure.name));
+        files::write(&plot("svg"), self.svg.as_bytes())?;
+        files::write(&plot("png"), &self.png)?;
+        for table in &self.tables {
+            files::write(&folder.join("curves").join(&table.file), table.csv.as_bytes())?;
+        }
+        Ok(plot("png"))
     }
 }

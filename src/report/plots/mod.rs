@@ -2,6 +2,7 @@
 
 mod convergence;
 mod correlation;
+pub(super) mod lobes;
 mod maps;
 mod peaks;
 mod predicted;
@@ -43,6 +44,7 @@ pub(crate) const ALL: &[Plot] = &[
     Plot { place: Place::Data, draw: maps::draw },
     Plot { place: Place::Data, draw: peaks::draw },
     Plot { place: Place::Data, draw: predicted::draw },
+    Plot { place: Place::Data, draw: lobes::draw },
     Plot { place: Place::Minima, draw: profile::draw },
     Plot { place: Place::Correlations, draw: correlation::draw },
     Plot { place: Place::Support, draw: support::draw },

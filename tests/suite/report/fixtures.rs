@@ -221,6 +221,7 @@ pub(super) fn film() -> Outcome {
             spectra: spectra.collect(),
         },
         held_out: None,
+        lobes: None,
         support: Some(support),
         orders: Vec::new(),
     };
@@ -282,6 +283,7 @@ pub(super) fn paint() -> Outcome {
         fit: fit_of_film(SigmaSource::Known),
         data: CaseData::Spectra { quantity: Quantity::Brdf, compare: Compared::Values, spectra },
         held_out: None,
+        lobes: None,
         support: None,
         orders: Vec::new(),
     };
@@ -358,6 +360,7 @@ pub(super) fn peaks() -> Outcome {
             curve: (0..=90).map(|t| (f64::from(t), law(f64::from(t)))).collect(),
         },
         held_out: None,
+        lobes: None,
         support: None,
         orders: (1..=5)
             .map(|order| {
