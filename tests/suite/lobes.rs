@@ -40,10 +40,10 @@ fn a_gloss_points_to_the_mirror_side() {
     // At this roughness the lobe has drawn towards grazing by a degree or two, not by ten.
     assert!((45.0..55.0).contains(&narrow.0), "{narrow:?}");
     assert!(wide.0 > narrow.0 && wide.1 < narrow.1, "{narrow:?} {wide:?}");
-    // On the hemisphere it lies at azimuth 180°, where the plane of incidence leaves it.
-    let rings = &settings[1].1.lights[0].hemisphere;
+    // On the hemisphere it lies at azimuth 180°, where the plane of incidence leaves it: several times the diffuse part.
+    let rings = &settings[0].1.lights[0].hemisphere;
     let column = |azimuth: usize| rings.iter().map(|ring| ring[azimuth]).fold(0.0, f64::max);
-    assert!(column(30) > 10.0 * column(0));
+    assert!(column(30) > 3.0 * column(0), "{} {}", column(30), column(0));
 }
 
 /// A fibre sends light below the surface as well; ∫ f |n·ωo| over the upper hemisphere, summed from the map's cells, is the
