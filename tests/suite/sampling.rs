@@ -32,14 +32,16 @@ struct Effort {
     polar: usize,
     /// Cells between the poles for the albedo, where a point costs an evaluation.
     albedo_polar: usize,
+    /// How often a cell of the albedo may be cut in four.
+    albedo_depth: usize,
     draws: usize,
 }
 
 /// Cells of 4.5°, a third of the width of the lobes that are tested with it.
-const QUICK: Effort = Effort { polar: 40, albedo_polar: 30, draws: 30_000 };
+const QUICK: Effort = Effort { polar: 40, albedo_polar: 30, albedo_depth: 0, draws: 30_000 };
 
-/// Cells of 1.5°.
-const LONG: Effort = Effort { polar: 120, albedo_polar: 120, draws: 1_000_000 };
+/// Cells of 2°.
+const LONG: Effort = Effort { polar: 90, albedo_polar: 45, albedo_depth: 5, draws: 300_000 };
 
 /// Nodes and weights of Gauss's rule of four points on [−1, 1] (Abramowitz and Stegun 1964, table 25.4).
 const GAUSS: [(f64, f64); 4] = [
@@ -64,8 +66,8 @@ struct Finding {
 }
 
 fn look(name: String, bsdf: &dyn Bsdf, channels: usize, outgoing: &Direction, effort: Effort) -> Finding {
-    let cells = integrate_density(bsdf, outgoing, effort.polar);
-    let albedos = integrate_albedo(bsdf, channels, outgoing, effort.albedo_polar);
+    let cells = integrate_density(bsdf, outgoing, effort);
+    let albedos = integrate_albedo(bsdf, channels, outgoing, effort);
     let through = bsdf.straight_through(outgoing);
 
     let mut random = ChaCha8Rng::seed_from_u64(20_251);
@@ -110,58 +112,87 @@ fn look(name: String, bsdf: &dyn Bsdf, channels: usize, outgoing: &Direction, ef
     }
 }
 
-/// The integral of the density over each cell.
-fn integrate_density(bsdf: &dyn Bsdf, outgoing: &Direction, polar: usize) -> Vec<f64> {
+/// Corners of the cells, ring by ring.
+fn corners(polar: usize) -> impl Iterator<Item = (f64, f64)> {
     let size = PI / polar as f64;
-    let density = |incoming: &Direction| bsdf.density(incoming, outgoing);
-    let cell = |(ring, segment)| refined(&density, (ring as f64 * size, segment as f64 * size), size, 4);
-    (0..polar).flat_map(|ring| (0..2 * polar).map(move |segment| (ring, segment))).map(cell).collect()
+    (0..polar).flat_map(move |ring| (0..2 * polar).map(move |segment| (ring as f64 * size, segment as f64 * size)))
 }
 
-/// Cuts a cell in four until that changes nothing that counts among some thousand cells, or `depth` times: light that is
-/// refracted at a grazing angle has an edge where the density rises as a root.
-fn refined(density: &dyn Fn(&Direction) -> f64, corner: (f64, f64), size: f64, depth: usize) -> f64 {
-    let whole = gauss(corner, size, density);
-    if depth == 0 || whole < 1e-5 {
+/// The integral of the density over each cell.
+fn integrate_density(bsdf: &dyn Bsdf, outgoing: &Direction, effort: Effort) -> Vec<f64> {
+    let density = |incoming: &Direction, values: &mut [f64]| values[0] = bsdf.density(incoming, outgoing);
+    let size = PI / effort.polar as f64;
+    let tolerance = tolerance(effort.polar);
+    corners(effort.polar).map(|corner| refined(&density, 1, corner, size, tolerance, 5)[0]).collect()
+}
+
+/// ∫ f |n·ωi| dωi of each channel.
+fn integrate_albedo(bsdf: &dyn Bsdf, channels: usize, outgoing: &Direction, effort: Effort) -> Vec<f64> {
+    let scattered = |incoming: &Direction, values: &mut [f64]| {
+        bsdf.evaluate(incoming, outgoing, values);
+        values.iter_mut().for_each(|value| *value *= incoming.z.abs());
+    };
+    let size = PI / effort.albedo_polar as f64;
+    let tolerance = tolerance(effort.albedo_polar);
+    let mut albedos = vec![0.0; channels];
+    for corner in corners(effort.albedo_polar) {
+        for (albedo, cell) in
+            albedos.iter_mut().zip(refined(&scattered, channels, corner, size, tolerance, effort.albedo_depth))
+        {
+            *albedo += cell;
+        }
+    }
+    albedos
+}
+
+/// Error of one cell that leaves 1e-3 of the sphere at worst, were all of one sign.
+fn tolerance(polar: usize) -> f64 {
+    1e-3 / (2 * polar * polar) as f64
+}
+
+/// An integrand with a value for each channel.
+type Integrand<'a> = dyn Fn(&Direction, &mut [f64]) + 'a;
+
+/// Cuts a cell in four until that changes nothing, or `depth` times. There are steps: a GGX surface has vertical microfacets, and
+/// beyond what these refract there is nothing.
+fn refined(
+    value: &Integrand<'_>,
+    channels: usize,
+    corner: (f64, f64),
+    size: f64,
+    tolerance: f64,
+    depth: usize,
+) -> Vec<f64> {
+    let whole = gauss(value, channels, corner, size);
+    if depth == 0 || whole.iter().all(|cell| *cell < tolerance) {
         return whole;
     }
     let half = 0.5 * size;
     let quarters = [(0.0, 0.0), (0.0, half), (half, 0.0), (half, half)].map(|(a, b)| (corner.0 + a, corner.1 + b));
-    let sum: f64 = quarters.iter().map(|&quarter| gauss(quarter, half, density)).sum();
-    if (sum - whole).abs() < 3e-7 {
-        return sum;
+    let sum = |parts: [Vec<f64>; 4]| -> Vec<f64> {
+        (0..channels).map(|channel| parts.iter().map(|part| part[channel]).sum()).collect()
+    };
+    let finer = sum(quarters.map(|quarter| gauss(value, channels, quarter, half)));
+    if finer.iter().zip(&whole).all(|(finer, whole)| (finer - whole).abs() < tolerance) {
+        return finer;
     }
-    quarters.iter().map(|&quarter| refined(density, quarter, half, depth - 1)).sum()
+    sum(quarters.map(|quarter| refined(value, channels, quarter, half, tolerance, depth - 1)))
 }
 
-fn gauss(corner: (f64, f64), size: f64, value: impl Fn(&Direction) -> f64) -> f64 {
-    points(corner, size).map(|(incoming, solid_angle)| solid_angle * value(&incoming)).sum()
-}
-
-/// Gauss's rule of 4 × 4 points over a cell: directions, and the solid angle that each stands for.
-fn points((theta, phi): (f64, f64), size: f64) -> impl Iterator<Item = (Direction, f64)> {
-    GAUSS.into_iter().flat_map(move |(x, weight_x)| {
+/// Gauss's rule of 4 × 4 points over a cell.
+fn gauss(value: &Integrand<'_>, channels: usize, (theta, phi): (f64, f64), size: f64) -> Vec<f64> {
+    let (mut sums, mut values) = (vec![0.0; channels], vec![0.0; channels]);
+    for (x, weight_x) in GAUSS {
         let theta = theta + 0.5 * (1.0 + x) * size;
-        GAUSS.into_iter().map(move |(y, weight_y)| {
+        for (y, weight_y) in GAUSS {
+            value(&spherical(theta, phi + 0.5 * (1.0 + y) * size), &mut values);
             let solid_angle = 0.25 * size * size * weight_x * weight_y * theta.sin();
-            (spherical(theta, phi + 0.5 * (1.0 + y) * size), solid_angle)
-        })
-    })
-}
-
-/// ∫ f |n·ωi| dωi of each channel.
-fn integrate_albedo(bsdf: &dyn Bsdf, channels: usize, outgoing: &Direction, polar: usize) -> Vec<f64> {
-    let size = PI / polar as f64;
-    let (mut albedos, mut values) = (vec![0.0; channels], vec![0.0; channels]);
-    for (ring, segment) in (0..polar).flat_map(|ring| (0..2 * polar).map(move |segment| (ring, segment))) {
-        for (incoming, solid_angle) in points((ring as f64 * size, segment as f64 * size), size) {
-            bsdf.evaluate(&incoming, outgoing, &mut values);
-            for (albedo, value) in albedos.iter_mut().zip(&values) {
-                *albedo += value * incoming.z.abs() * solid_angle;
+            for (sum, value) in sums.iter_mut().zip(&values) {
+                *sum += solid_angle * value;
             }
         }
     }
-    albedos
+    sums
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "angles are positive, cells few")]
@@ -403,7 +434,7 @@ fn every_model_draws_what_its_density_says() {
     judge(&look_at_all(&subjects(), QUICK));
 }
 
-/// The same with 30 times the draws, and narrow lobes besides. Some minutes.
+/// The same with ten times the draws, and narrow lobes besides. Some minutes.
 #[test]
 #[ignore = "long: run by .ci/long"]
 fn every_model_draws_what_its_density_says_with_many_draws() {

@@ -75,7 +75,7 @@ impl Longitudinal {
     /// [0, 1).
     ///
     /// Mₚ is what remains of a lobe e^{u/v} about a direction at −θo, u the cosine to it, when azimuths are summed over.
-    /// u is drawn, and turned about that direction (d'Eon et al. 2013, equations 10 and 11); written as
+    /// u is drawn, and turned about that direction (d'Eon, Marschner and Hanika 2013); written as
     /// 1 − u = −v ln(ξ + (1 − ξ) e^{−2/v}), which loses no digits for small v.
     pub(super) fn draw(&self, p: usize, sin_theta_o: f64, cos_theta_o: f64, random: [f64; 2]) -> f64 {
         let inverse_v = self.inverse_variances[p];

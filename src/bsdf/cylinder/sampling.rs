@@ -2,7 +2,7 @@
 //!
 //! The far field is Σₚ Mₚ Nₚ, each Mₚ a density along the fibre and each Nₚ a share of the light times a density around it. So a
 //! path p is drawn by its share Aₚ, averaged over the fibre's width and over channels; an inclination from Mₚ, exactly (d'Eon
-//! et al. 2013, *Importance sampling for physically-based hair fiber models*, equation 10, see [`Longitudinal::draw`]); an
+//! et al. 2013, *Importance sampling for physically-based hair fiber models*; see [`Longitudinal::draw`]); an
 //! azimuth from a table of Nₚ. The table stands for the usual draw of a position h across the fibre, whose density would
 //! need an integral over h at each call.
 //!
