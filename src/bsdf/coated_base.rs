@@ -24,7 +24,7 @@ use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 use self::base::Base;
-use self::design::check_name;
+pub(super) use self::design::check_name;
 use self::variable_material::{Channels, VariableMaterial};
 use super::beckmann_lobe::{HalfVector, lobe};
 use super::coat_sampling::{CoatSampler, refract, refracted_cosine};

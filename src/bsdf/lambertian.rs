@@ -66,17 +66,22 @@ impl Model for Lambertian {
 
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
         let channels = 0..self.channel_count;
-        Box::new(BoundLambertian {
-            reflectance: channels.map(|channel| self.albedo.value(values, channel) * FRAC_1_PI).collect(),
-        })
+        Box::new(BoundLambertian::of_albedo(channels.map(|channel| self.albedo.value(values, channel))))
     }
 }
 
 /// A Lambertian surface with its parameters given.
 #[derive(Debug)]
-struct BoundLambertian {
+pub(super) struct BoundLambertian {
     /// ρ/π of each channel.
     reflectance: Vec<f64>,
+}
+
+impl BoundLambertian {
+    /// The surface that sends back these shares of the light, one a channel.
+    pub(super) fn of_albedo(albedo: impl Iterator<Item = f64>) -> Self {
+        Self { reflectance: albedo.map(|albedo| albedo * FRAC_1_PI).collect() }
+    }
 }
 
 impl Bsdf for BoundLambertian {

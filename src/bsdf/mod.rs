@@ -5,12 +5,14 @@
 //! wavelengths alone is done when the model is made, work that depends on the parameters when it is bound, and only
 //! the rest for each pair of directions. The loop over channels is the innermost one and runs over contiguous memory.
 
+mod absorbers;
 mod beckmann_lobe;
 mod channel_parameters;
 mod coat_sampling;
 mod coated_base;
 pub mod cylinder;
 mod feather;
+mod film_at_unknown_angle;
 mod granier;
 mod interference;
 mod iridescent_plastic;
@@ -18,6 +20,7 @@ mod lambertian;
 mod microfacet;
 mod model_error;
 mod oriented;
+mod pigmented_base;
 mod rough_plastic;
 mod sampling;
 pub mod spongy_barb;
@@ -27,6 +30,7 @@ pub use coated_base::{
     CoatedBase, Description, Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice, OwnMaterial,
 };
 pub use feather::{BarbDesign, BarbSpecies, BarbuleDesign, Feather, FeatherDesign};
+pub use film_at_unknown_angle::{FilmAtUnknownAngle, FilmAtUnknownAngleDesign};
 pub use granier::{GranierHeidrich, GranierHeidrichDesign, NormalSource, Site, normal_from_rgb};
 pub use interference::Interference;
 pub use iridescent_plastic::{IridescentPlastic, IridescentPlasticDesign};
@@ -34,6 +38,7 @@ pub use lambertian::{Lambertian, LambertianDesign};
 pub use microfacet::{Distribution, MicrofacetDesign, MicrofacetInterface};
 pub use model_error::ModelError;
 pub use oriented::Oriented;
+pub use pigmented_base::{PigmentedBase, PigmentedBaseDesign, layer_reflectance};
 pub use rough_plastic::{InternalReflection, RoughPlastic, RoughPlasticDesign};
 pub use sampling::Sample;
 

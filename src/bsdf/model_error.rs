@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::optics::MaterialError;
+use crate::pigment::{InversionError, PigmentError};
 
 /// A model that cannot be made, with what was found, what was expected and how to mend it.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -120,6 +121,51 @@ pub enum ModelError {
         count: usize,
         /// Which names could be meant.
         meant: String,
+    },
+    /// Two absorbers of one name.
+    #[error("two pigments are named {name:?}; give each a `name` of its own, since its parameters are named after it")]
+    TwoPigments {
+        /// The name.
+        name: String,
+    },
+    /// An absorber that is known in three channels, in a job that has others.
+    #[error(
+        "pigment {name:?} is known in red, green and blue only, and the readings have {channels} wavelengths; use a kind with a spectrum (`eumelanin`, `pheomelanin`, `carotenoid`, `bands`, `table`)"
+    )]
+    PigmentNeedsRgb {
+        /// The name.
+        name: String,
+        /// Channels of the job.
+        channels: usize,
+    },
+    /// A colour where no fibre is.
+    #[error(
+        "pigment {name:?} is the absorption of a fibre behind a colour, and this model has no fibre; use another kind"
+    )]
+    PigmentNeedsFibre {
+        /// The name.
+        name: String,
+    },
+    /// Absorbers and their sum at once.
+    #[error("`per_channel` names \"sigma_a\", which `pigments` make; leave one of the two out")]
+    PigmentsAndAbsorption,
+    /// An absorber that cannot be.
+    #[error("pigment {name:?}: {problem}")]
+    Pigment {
+        /// The name.
+        name: String,
+        /// What is wrong with it.
+        #[source]
+        problem: PigmentError,
+    },
+    /// A colour that no absorption gives.
+    #[error("pigment {name:?}: {problem}")]
+    Colour {
+        /// The name.
+        name: String,
+        /// Why.
+        #[source]
+        problem: InversionError,
     },
     /// A material that does not exist, or a wrong table.
     #[error("{what}: {problem}")]

@@ -16,6 +16,7 @@ mod mapping;
 mod minima;
 mod objective;
 mod outcome;
+mod random_effects;
 mod residuals;
 mod search;
 mod smooth;
@@ -35,5 +36,7 @@ pub use outcome::{
     Bound, Estimate, Fit, Goodness, Loss, Minimum, OpenDirection, ProfilePoint, RIVAL_SHARE, Settings, SigmaSource,
     Solver, StopReason, TracePoint,
 };
+pub use random_effects::{RandomEffects, random_effects};
 pub use residuals::Residuals;
+pub use statistics::effective_readings;
 pub use warnings::misfit;

@@ -44,8 +44,18 @@ pub(super) fn one_sided_95(slope: f64, width: f64) -> f64 {
     high
 }
 
+/// How many independent residuals carry the information of these, by the correlation of each with the next one: N (1 − r)/
+/// (1 + r), at least 1. Within two standard errors of zero the correlation is taken as none.
+pub fn effective_readings(residuals: &[f64]) -> f64 {
+    #[expect(clippy::cast_precision_loss, reason = "numbers of readings are far below 2^53")]
+    let count = residuals.len() as f64;
+    let correlation = lag_one(residuals);
+    let significant = correlation > 2.0 / count.sqrt();
+    if significant { count * (1.0 - correlation) / (1.0 + correlation) } else { count }.max(1.0)
+}
+
 /// Correlation of each value with the next one.
-pub(super) fn lag_one(values: &[f64]) -> f64 {
+fn lag_one(values: &[f64]) -> f64 {
     let square: f64 = values.iter().map(|r| r * r).sum();
     let product: f64 = values.windows(2).map(|pair| pair[0] * pair[1]).sum();
     if square > 0.0 { product / square } else { 0.0 }

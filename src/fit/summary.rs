@@ -8,7 +8,7 @@ use super::outcome::{
     Bound, Estimate, Fit, Goodness, Minimum, OpenDirection, ProfilePoint, Settings, SigmaSource, TracePoint,
 };
 use super::search::Survey;
-use super::statistics::{central_95, lag_one, one_sided_95};
+use super::statistics::{central_95, effective_readings, one_sided_95};
 use super::warnings::warnings;
 use crate::parameter::Spread;
 
@@ -73,10 +73,7 @@ fn goodness(objective: &Objective<'_>, best: &Found, settings: &Settings) -> Goo
     let freedom = objective.rows() as i64 - free as i64;
     let known = objective.residuals.sigma_known();
     let per_freedom = (freedom > 0).then(|| best.cost / freedom as f64);
-    let correlation = lag_one(readings);
-    // Within two standard errors of zero the correlation is taken as none.
-    let significant = correlation > 2.0 / count.sqrt();
-    let effective = if significant { count * (1.0 - correlation) / (1.0 + correlation) } else { count }.max(1.0);
+    let effective = effective_readings(readings);
     let goodness = Goodness {
         readings: objective.readings,
         effective_readings: effective,

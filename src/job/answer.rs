@@ -19,10 +19,14 @@ pub(super) fn job_answer(outcome: &Outcome) -> String {
         [] => return String::new(),
         [main, others @ ..] => (main, others),
     };
-    let assumed = if others.is_empty() { String::new() } else { format!("Assuming {}: ", main.name) };
+    // A group is a part of the readings, no assumption.
+    let heading = |case: &Case| {
+        if case.group.is_empty() { format!("Assuming {}: ", case.name) } else { format!("{}: ", case.name) }
+    };
+    let assumed = if others.is_empty() { String::new() } else { heading(main) };
     sentences.push(format!("{assumed}{}", main.answer));
     let main = sentences.join(" ");
-    let others = others.iter().map(|case| format!("Assuming {}: {}", case.name, values_sentence(case)));
+    let others = others.iter().map(|case| format!("{}{}", heading(case), values_sentence(case)));
     let judged = outcome.comparison.as_ref().and_then(|comparison| comparison_answer(comparison, &outcome.cases));
     std::iter::once(main).chain(others).chain(judged).collect::<Vec<_>>().join("\n")
 }
@@ -43,10 +47,15 @@ pub(super) fn case_answer(case: &Case) -> String {
     if case.orders.len() < 2 {
         sentences.extend(rivals(fit));
     }
-    sentences.extend(misfit_size(case));
+    if case.population.is_none() {
+        sentences.extend(misfit_size(case));
+    }
     sentences.extend(held_out(case));
     sentences.extend(reddening(case));
-    sentences.extend(misfit(&fit.goodness));
+    // Differences between specimens are no misfit.
+    if case.population.is_none() {
+        sentences.extend(misfit(&fit.goodness));
+    }
     if !fit.open_directions.is_empty() {
         let open: Vec<&str> =
             fit.open_directions.iter().map(|direction| direction.text.trim_end_matches('.')).collect();
@@ -64,6 +73,9 @@ pub(super) fn case_answer(case: &Case) -> String {
 
 /// The fitted values, or every order's where the readings do not tell them apart.
 pub(super) fn values_sentence(case: &Case) -> String {
+    if let Some(population) = &case.population {
+        return population.text.clone();
+    }
     let (first, last) = match case.orders.as_slice() {
         [] => return main_values(&case.fit),
         [only] => {

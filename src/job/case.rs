@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::file::{DataFile, FreeFile, ModelFile, ParameterFile};
 use super::film_peaks::FilmPeaks;
 use super::load::input_file;
+use super::origin::check_geometry;
 use super::peaks::PeaksProblem;
 use super::spectra::{SpectraProblem, SpectraSetup};
 use super::values::{Values, check_inside, index_of, places_of, said_of};
@@ -69,7 +70,7 @@ pub(super) fn read_data(
     let mut input = None;
     let mut table = match (&data.file, &data.layout, &data.synthetic) {
         (Some(name), Some(layout), None) => {
-            let path = resolve(name, folder)?;
+            let path = resolve("data.file", name, folder)?;
             let text = TableText::load(&path)?;
             // Read once more for its hash, which must be that of the bytes as they are; the size has been checked.
             let bytes = std::fs::read(&path).map_err(|error| JobError::key("data.file", error.to_string()))?;
@@ -103,13 +104,13 @@ pub(super) fn read_data(
 }
 
 /// `$BARBULE_DATA/` at the start of a path stands for the folder that the environment variable names.
-pub(super) fn resolve(name: &Path, folder: &Path) -> Result<PathBuf, JobError> {
+pub(super) fn resolve(key: &str, name: &Path, folder: &Path) -> Result<PathBuf, JobError> {
     match name.strip_prefix("$BARBULE_DATA") {
         Err(_) => Ok(folder.join(name)),
         Ok(rest) => match std::env::var_os("BARBULE_DATA") {
             Some(data) => Ok(PathBuf::from(data).join(rest)),
             None => Err(JobError::key(
-                "data.file",
+                key,
                 format!(
                     "`{}` lies in the folder of measurements, and the environment variable BARBULE_DATA, which names \
                      that folder, is not set; set it, or write the table's own path",
@@ -176,6 +177,7 @@ impl CheckedCase {
         let mut gains = Values::new();
         let comparison = match table {
             Table::Spectra(table) => {
+                check_geometry(&file, &table)?;
                 let ids: Vec<_> = table.spectra.iter().map(|s| (s.id.as_str(), &s.geometry)).collect();
                 let fitted = fitted(&file.data, &ids)?;
                 let problem = spectra_problem(&file, &table, &fitted)?;

@@ -2,8 +2,10 @@
 
 use std::fmt::Write;
 
-use super::case::Comparison;
+use super::case::{CheckedCase, Comparison};
 use super::model_note::model_note;
+use super::population::specimen_names;
+use super::support::part;
 use super::sweep::describe as describe_sweep;
 use super::{Job, JobError};
 use crate::fit::{Assignment, Role};
@@ -30,6 +32,9 @@ pub fn describe(job: &Job) -> Result<String, JobError> {
         let settings = &case.file.fit;
         // Writing to a String cannot fail.
         let _ = writeln!(text, "\nCase {}\n  fits {readings}; {sigma}", case.file.case);
+        if let Some(line) = specimens_text(&case) {
+            let _ = writeln!(text, "  {line}");
+        }
         let _ = writeln!(text, "  {}", model_note(&case)?.text);
         let _ = writeln!(text, "  from {} starts, seed {}", settings.starts, settings.seed);
         for (parameter, assignment) in residuals.parameters().iter().zip(&case.assignments) {
@@ -41,6 +46,19 @@ pub fn describe(job: &Job) -> Result<String, JobError> {
         let _ = writeln!(text, "\nSweep\n  {}", describe_sweep(job)?);
     }
     Ok(text.trim_end().to_owned())
+}
+
+/// What is done with the specimens of a table, where the job speaks of them.
+fn specimens_text(case: &CheckedCase) -> Option<String> {
+    let (Some(settings), Comparison::Spectra(table, fitted, _)) = (&case.file.specimens, &case.comparison) else {
+        return None;
+    };
+    let count = specimen_names(&part(table, |index| fitted[index])).len();
+    let prediction = if settings.leave_one_out { " and predicted from the others" } else { "" };
+    Some(match count {
+        1 => "one specimen alone: there is no spread to tell".to_owned(),
+        count => format!("{count} specimens, each fitted by itself too{prediction}"),
+    })
 }
 
 fn role_text(parameter: &Parameter, assignment: &Assignment, all: &[Parameter]) -> String {

@@ -49,6 +49,27 @@ fn sections(layout: &TableLayout) -> (String, &'static str) {
              \"film.thickness_nm\" = { lower = 50, upper = 1500 }\n\
              \"film.index\" = { lower = 1.1, upper = 2.6 }\n",
         ),
+        TableLayout::Spectra(layout) if layout.is_without_geometry() => (
+            "[instrument]\n\
+             gain = \"fixed\"  # guess: a reading of 1 is the white standard; or \"shared\", \"per-spectrum\"\n\
+             bandwidth_nm = 0  # FILL IN: spectral resolution (full width at half maximum)\n\n\
+             # guess: several individuals, each fitted by itself and predicted from the others; delete it if all are of one\n\
+             [specimens]\n\
+             leave_one_out = true\n\n"
+                .to_owned(),
+            "# guess: pigmented plumage; for an iridescent one use `film-at-unknown-angle`, with gain and offset free\n\
+             [model]\n\
+             kind = \"pigmented-base\"\n\
+             pigments = [{ kind = \"eumelanin\" }, { kind = \"carotenoid\" }]\n\n\
+             # guess: which parameters are free, and between which bounds\n\
+             [parameters]\n\
+             \"eumelanin.amount\" = { lower = 0, upper = 100 }\n\
+             \"carotenoid.amount\" = { lower = 0, upper = 100 }\n\
+             \"carotenoid.shift_per_cm\" = { lower = -500, upper = 2500 }\n\
+             \"carotenoid.width\" = { lower = 0.5, upper = 4 }\n\
+             scattering = { lower = 0.01, upper = 100 }\n\
+             scattering_exponent = { lower = -1, upper = 4 }\n",
+        ),
         TableLayout::Spectra(layout) => {
             let (gain, why) = match layout.quantity {
                 Quantity::Reflectance => {

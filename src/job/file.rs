@@ -6,11 +6,12 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
+use super::population::SpecimensFile;
 use super::sweep::SweepFile;
 use crate::bsdf::cylinder::{CylinderDesign, FilmedCylinderDesign};
 use crate::bsdf::{
-    Design, FeatherDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign,
-    RoughPlasticDesign,
+    Design, FeatherDesign, FilmAtUnknownAngleDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign,
+    MicrofacetDesign, PigmentedBaseDesign, RoughPlasticDesign,
 };
 use crate::fit::Settings;
 use crate::measure::{Compared, Instrument, Quantity, TableLayout, ThinFilmLawDesign};
@@ -40,6 +41,10 @@ pub struct JobFile {
     /// Parameters that are free, fixed away from their default, or tied; the rest keep their defaults.
     #[serde(default)]
     pub parameters: BTreeMap<String, ParameterFile>,
+    /// Fits each specimen of the table by itself too, tells how much they differ, and predicts each from the others. For
+    /// tables of several individuals; without it all spectra are fitted as one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specimens: Option<SpecimensFile>,
     /// How to fit.
     #[serde(default)]
     pub fit: Settings,
@@ -50,8 +55,11 @@ pub struct JobFile {
     pub sweep: Option<SweepFile>,
 }
 
+/// Name of a case that its author did not name.
+pub(super) const MAIN_CASE: &str = "main";
+
 fn default_case() -> String {
-    "main".into()
+    MAIN_CASE.into()
 }
 
 /// Where the readings come from: `file` with its `layout`, or `synthetic`.
@@ -149,6 +157,10 @@ pub enum ModelFile {
     SpongyBarb(CylinderDesign),
     /// The vane of a feather: barbs along the tangent, barbules at an angle to them.
     Feather(FeatherDesign),
+    /// A layer that scatters and absorbs, over black: pigmented plumage. Needs no geometry.
+    PigmentedBase(PigmentedBaseDesign),
+    /// One film at an angle that nobody wrote down. Needs no geometry.
+    FilmAtUnknownAngle(FilmAtUnknownAngleDesign),
     /// The closed law of a single film's peak wavelengths. For peak tables only.
     ThinFilmLaw(ThinFilmLawDesign),
 }

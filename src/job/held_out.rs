@@ -31,7 +31,9 @@ pub(super) fn held_out(data: &CaseData) -> Option<HeldOut> {
 pub(super) fn comparison(cases: &[Case]) -> Option<Comparison> {
     let judged: Vec<(&Case, &HeldOut)> =
         cases.iter().filter_map(|case| Some((case, case.held_out.as_ref()?))).collect();
-    if judged.len() < 2 || judged.len() < cases.len() {
+    // Groups are other readings, not other assumptions.
+    let are_groups = cases.iter().any(|case| !case.group.is_empty());
+    if judged.len() < 2 || judged.len() < cases.len() || are_groups {
         return None;
     }
     // How many independent readings there are is a matter of the readings; the case that follows them best shows it best.

@@ -7,6 +7,8 @@ use sha2::{Digest, Sha256};
 
 use super::case::{CheckedCase, read_data, resolve};
 use super::error::at_line;
+use super::origin::by_group;
+use super::pigments::load_pigments;
 use super::syntax::{keys_of, line_of, parse};
 use super::{AlternativeFile, InputFile, JobError, JobFile};
 use crate::fit::FitError;
@@ -57,20 +59,30 @@ impl Job {
         let named =
             if path.is_dir() { path.canonicalize().unwrap_or_else(|_| path.to_owned()) } else { path.to_owned() };
         let name = named.file_stem().map_or_else(|| "job".into(), |stem| stem.to_string_lossy().into_owned());
-        let file = parse(&text, &file_path)?;
-        Ok(Self { name, path: file_path, folder, file, text, inputs: vec![input] })
+        let mut job =
+            Self { name, file: parse(&text, &file_path)?, path: file_path, folder, text, inputs: vec![input] };
+        job.load_pigments()?;
+        Ok(job)
     }
 
     /// A job from its text, with paths that count from `folder`.
     pub fn from_text(name: &str, text: &str, folder: &Path) -> Result<Self, JobError> {
         let file = parse(text, Path::new(name))?;
         let (name, path, text) = (name.to_owned(), PathBuf::from(name), text.to_owned());
-        Ok(Self { name, path, folder: folder.to_owned(), file, text, inputs: Vec::new() })
+        let mut job = Self { name, path, folder: folder.to_owned(), file, text, inputs: Vec::new() };
+        job.load_pigments()?;
+        Ok(job)
+    }
+
+    fn load_pigments(&mut self) -> Result<(), JobError> {
+        let inputs = load_pigments(&mut self.file, &self.folder).map_err(|error| self.placed(error, 0))?;
+        self.inputs.extend(inputs);
+        Ok(())
     }
 
     /// The table that the job reads, if it reads one and the folder that holds it is known.
     pub fn table_path(&self) -> Option<PathBuf> {
-        self.file.data.file.as_ref().and_then(|name| resolve(name, &self.folder).ok())
+        self.file.data.file.as_ref().and_then(|name| resolve("data.file", name, &self.folder).ok())
     }
 
     /// Every case, its readings read or made and checked against its model, and the files that they came from.
@@ -82,7 +94,9 @@ impl Job {
             if let Some(input) = input.filter(|input| !inputs.contains(input)) {
                 inputs.push(input);
             }
-            cases.push(CheckedCase::new(file, table).map_err(|error| self.placed(error, index))?);
+            for (file, table) in by_group(file, table) {
+                cases.push(CheckedCase::new(file, table).map_err(|error| self.placed(error, index))?);
+            }
         }
         Ok((cases, inputs))
     }

@@ -13,8 +13,11 @@ mod load;
 mod lobes;
 mod model_note;
 mod models;
+mod origin;
 mod outcome;
 mod peaks;
+mod pigments;
+mod population;
 mod predict;
 mod run;
 mod schema;
@@ -37,6 +40,9 @@ pub use models::{ModelEntry, models};
 pub use outcome::{
     Case, CaseData, Comparison, ComparisonRow, HeldOut, InputFile, LightLobes, Lobes, ModelNote, Outcome, PeakFit,
     Prediction, SpectrumFit, Support, ThicknessOrder, Truth,
+};
+pub use population::{
+    AbsorberTest, Effects, LeftOut, ParameterSpread, Population, Specimen, SpecimenSpectrum, SpecimensFile,
 };
 pub use run::run;
 pub use schema::schemas;

@@ -6,6 +6,7 @@ use super::file::ModelFile;
 use super::outcome::ModelNote;
 use crate::bsdf::CoatedBase;
 use crate::measure::{Calibration, Instrument, PhaseJumps};
+use crate::pigment::PigmentDesign;
 
 /// Sentences, materials and works to cite.
 pub(super) fn model_note(case: &CheckedCase) -> Result<ModelNote, JobError> {
@@ -32,6 +33,16 @@ pub(super) fn model_note(case: &CheckedCase) -> Result<ModelNote, JobError> {
             // The ends of the readings say which materials are used beyond what is known of them.
             let described = CoatedBase::new(design, &case.comparison.wavelengths_nm())?.describe();
             (described.text, described.materials, described.references)
+        }
+        ModelFile::PigmentedBase(design) => {
+            let names: Vec<&str> = design.pigments.iter().map(PigmentDesign::name).collect();
+            let pigments = if names.is_empty() {
+                "It holds no pigment.".to_owned()
+            } else {
+                format!("What absorbs in it: {}.", names.join(", "))
+            };
+            let sponge = if design.sponge { " It scatters one band of wavelengths more than the rest." } else { "" };
+            (format!("{} {pigments}{sponge}", card.text), Vec::new(), card.references())
         }
         _ => (card.text.to_owned(), Vec::new(), card.references()),
     };

@@ -7,13 +7,14 @@ use super::file::ModelFile;
 use crate::bsdf::cylinder::{CylinderModel, FilmedCylinderModel};
 use crate::bsdf::spongy_barb::SpongyBarbModel;
 use crate::bsdf::{
-    CoatedBase, Feather, GranierHeidrich, IridescentPlastic, Lambertian, MicrofacetInterface, Model, Oriented,
-    RoughPlastic,
+    CoatedBase, Feather, FilmAtUnknownAngle, GranierHeidrich, IridescentPlastic, Lambertian, MicrofacetInterface,
+    Model, Oriented, PigmentedBase, RoughPlastic,
 };
 use crate::measure::{PeakModel, ThinFilmLaw};
 use crate::nearest::suggestion;
 use crate::optics::Reference;
 use crate::parameter::Parameter;
+use crate::pigment::PigmentDesign;
 
 impl ModelFile {
     /// The scattering model at these wavelengths, nm.
@@ -29,11 +30,25 @@ impl ModelFile {
             Self::FilmedCylinder(design) => oriented(FilmedCylinderModel::new(design, wavelengths_nm)?),
             Self::SpongyBarb(design) => oriented(SpongyBarbModel::new(design, wavelengths_nm)?),
             Self::Feather(design) => oriented(Feather::new(design, wavelengths_nm)?),
+            Self::PigmentedBase(design) => Box::new(PigmentedBase::new(design, wavelengths_nm)?),
+            Self::FilmAtUnknownAngle(design) => Box::new(FilmAtUnknownAngle::new(design, wavelengths_nm)?),
             Self::ThinFilmLaw(_) => {
                 let problem = "`thin-film-law` predicts peak wavelengths, not spectra; use `coated-base`";
                 return Err(JobError::key("model.kind", problem));
             }
         })
+    }
+
+    /// Whether its readings depend on where light and viewer stand: a table that does not say it cannot be fitted by it.
+    pub(super) fn needs_geometry(&self) -> bool {
+        !matches!(self, Self::Lambertian(_) | Self::PigmentedBase(_) | Self::FilmAtUnknownAngle(_))
+    }
+
+    /// Names of its pigments that are sums of bands, which describe a spectrum and name no substance.
+    pub(super) fn band_names(&self) -> Vec<&str> {
+        let Self::PigmentedBase(design) = self else { return Vec::new() };
+        let bands = design.pigments.iter().filter(|pigment| matches!(pigment, PigmentDesign::Bands { .. }));
+        bands.map(PigmentDesign::name).collect()
     }
 
     /// Its entry in the list of models.
@@ -49,6 +64,8 @@ impl ModelFile {
             Self::FilmedCylinder(_) => &FILMED_CYLINDER,
             Self::SpongyBarb(_) => &SPONGY_BARB,
             Self::Feather(_) => &FEATHER,
+            Self::PigmentedBase(_) => &PIGMENTED_BASE,
+            Self::FilmAtUnknownAngle(_) => &FILM_AT_UNKNOWN_ANGLE,
             Self::ThinFilmLaw(_) => &THIN_FILM_LAW,
         }
     }
@@ -88,7 +105,7 @@ const WALTER: (&str, &str) = (
 );
 
 /// Every model, in the order in which `barbule models` lists them.
-const CARDS: [&ModelCard; 11] = [
+const CARDS: [&ModelCard; 13] = [
     &COATED_BASE,
     &MICROFACET,
     &ROUGH_PLASTIC,
@@ -99,6 +116,8 @@ const CARDS: [&ModelCard; 11] = [
     &FILMED_CYLINDER,
     &SPONGY_BARB,
     &FEATHER,
+    &PIGMENTED_BASE,
+    &FILM_AT_UNKNOWN_ANGLE,
     &THIN_FILM_LAW,
 ];
 
@@ -232,15 +251,61 @@ const FEATHER: ModelCard = ModelCard {
     ],
 };
 
+const DONNER: (&str, &str) = (
+    "Donner & Jensen 2006",
+    "Donner, C. and Jensen, H. W. (2006). A spectral BSSRDF for shading human skin. Eurographics Symposium on Rendering, \
+     409–417.",
+);
+
+const PIGMENTED_BASE: ModelCard = ModelCard {
+    kind: "pigmented-base",
+    text: "A layer that scatters with a power of the wavelength and absorbs by its pigments, over black (Kubelka and Munk \
+           1931, Kubelka 1948), under a surface that sends back a constant share.",
+    usage: "Reads spectra at any angles, or at none: it is Lambertian. Pigments are `eumelanin`, `pheomelanin`, `carotenoid`, \
+            `bands` (a list of peaks and widths) and `table` (a file). `sponge = true` adds a band of wavelengths that is \
+            scattered more, for feathers that are blue or green without iridescence.",
+    example: "kind = \"pigmented-base\"\n\
+              pigments = [\n    \
+                  { kind = \"eumelanin\" },\n    \
+                  { kind = \"carotenoid\" },\n    \
+                  { kind = \"bands\", name = \"violet\", bands = [{ peak_nm = 390, width_nm = 30 }] },\n\
+              ]",
+    works: &[
+        (
+            "Kubelka & Munk 1931",
+            "Kubelka, P. and Munk, F. (1931). Ein Beitrag zur Optik der Farbanstriche. Zeitschrift für technische Physik 12, \
+             593–601.",
+        ),
+        (
+            "Kubelka 1948",
+            "Kubelka, P. (1948). New contributions to the optics of intensely light-scattering materials. Part I. Journal of \
+             the Optical Society of America 38, 448–457.",
+        ),
+        DONNER,
+    ],
+};
+
+const FILM_AT_UNKNOWN_ANGLE: ModelCard = ModelCard {
+    kind: "film-at-unknown-angle",
+    text: "One film on a substrate, seen at an angle that was not recorded: what is fitted is its optical path, index × \
+           thickness × cosine of the angle inside it (Born & Wolf 1999).",
+    usage: "Reads spectra at any angles, or at none; free the instrument's gain and offset, which stand for what the angle does \
+            to the level. Paths a quarter of a wavelength apart are twins, and all that the spectra allow are listed.",
+    example: "kind = \"film-at-unknown-angle\"\nfilm = \"keratin\"\nsubstrate = \"bird_melanin\"",
+    works: &[BORN],
+};
+
+const BORN: (&str, &str) = (
+    "Born & Wolf 1999",
+    "Born, M. and Wolf, E. (1999). Principles of Optics, 7th edition, section 7.6. Cambridge University Press.",
+);
+
 const THIN_FILM_LAW: ModelCard = ModelCard {
     kind: "thin-film-law",
     text: "The closed law of a single film's peaks, m λ = 2 d √(n² − sin²θ).",
     usage: "Reads peak wavelengths only.",
     example: "kind = \"thin-film-law\"",
-    works: &[(
-        "Born & Wolf 1999",
-        "Born, M. and Wolf, E. (1999). Principles of Optics, 7th edition, section 7.6. Cambridge University Press.",
-    )],
+    works: &[BORN],
 };
 
 /// A model as `barbule models` lists it.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::population::Population;
 use crate::fit::Fit;
 use crate::measure::{Compared, Geometry, Quantity};
 use crate::optics::{MaterialNote, Reference};
@@ -77,6 +78,12 @@ pub struct Case {
     pub lobes: Option<Lobes>,
     /// Whether the data support a film, where the model has one and there are incidences to leave out.
     pub support: Option<Support>,
+    /// The specimens each and together, where the job asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub population: Option<Population>,
+    /// What sets the specimens of this case apart from those of the others: species, patch. Empty where nothing does.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub group: String,
     /// Thickness for each order of interference, where the data (peaks alone) do not give the order.
     pub orders: Vec<ThicknessOrder>,
 }
@@ -183,6 +190,9 @@ pub struct SpectrumFit {
     pub id: String,
     /// Angles.
     pub geometry: Geometry,
+    /// Whether nobody wrote the angles down; they are then those of the normal and mean nothing.
+    #[serde(default)]
+    pub without_geometry: bool,
     /// Whether the fit saw it; false for one that was left out and is only predicted.
     pub fitted: bool,
     /// Wavelengths, nm.
@@ -191,7 +201,7 @@ pub struct SpectrumFit {
     pub measured: Vec<f64>,
     /// σ of each, where known.
     pub sigmas: Option<Vec<f64>>,
-    /// The model at the best minimum.
+    /// The model at the best minimum; that of the specimen's own fit where specimens are fitted each by itself.
     pub model: Vec<f64>,
 }
 

@@ -55,7 +55,7 @@ pub(super) fn predict(file: &JobFile, table: &GonioTable, values: &Values) -> Re
 }
 
 /// Scales and shifts a model spectrum to a measured one by weighted least squares, as far as each is free.
-fn calibrate(spectrum: &Spectrum, free_gain: bool, free_offset: bool, model: &mut [f64]) {
+pub(super) fn calibrate(spectrum: &Spectrum, free_gain: bool, free_offset: bool, model: &mut [f64]) {
     let weight = |index: usize| spectrum.sigmas.as_ref().map_or(1.0, |sigmas| sigmas[index].powi(-2));
     let (mut s, mut sm, mut sy, mut smm, mut smy) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (index, (m, y)) in model.iter().zip(&spectrum.values).enumerate() {

@@ -9,6 +9,7 @@ use super::lobes::lobes_of_fit;
 use super::model_note::model_note;
 use super::outcome::{Case, CaseData, Outcome, PeakFit, Prediction, SpectrumFit, ThicknessOrder, Truth};
 use super::peaks::PeaksProblem;
+use super::population::{Population, population};
 use super::predict::predict;
 use super::support::film_support;
 use super::values::values_by_name;
@@ -44,14 +45,22 @@ pub fn run(job: &Job, control: &Control) -> Result<Outcome, JobError> {
 fn run_case(case: &CheckedCase, control: &Control) -> Result<Case, JobError> {
     let found = case.fit(control)?;
     let support = film_support(case, &found, control)?;
+    let population = population(case, &found, control)?;
+    let group = match &case.comparison {
+        Comparison::Spectra(table, ..) => table.spectra[0].origin.group.clone(),
+        Comparison::Peaks(..) => String::new(),
+    };
     let lobes = match &case.comparison {
-        Comparison::Spectra(table, fitted, _) => {
+        // Where nobody wrote the angles down, a lobe at the normal would be taken for the measured one.
+        Comparison::Spectra(table, fitted, _) if !table.spectra[0].origin.without_geometry => {
             Some(lobes_of_fit(&case.file, table, fitted, &values_by_name(&found))?)
         }
-        Comparison::Peaks(..) => None,
+        Comparison::Spectra(..) | Comparison::Peaks(..) => None,
     };
     let (data, orders) = match &case.comparison {
-        Comparison::Spectra(table, fitted, _) => (spectra_data(&case.file, table, fitted, &found)?, Vec::new()),
+        Comparison::Spectra(table, fitted, _) => {
+            (spectra_data(&case.file, table, fitted, &found, population.as_ref())?, Vec::new())
+        }
         Comparison::Peaks(table, fitted, problem) => {
             (peaks_data(&case.file, problem, table, fitted, &found)?, thickness_orders(problem, &found))
         }
@@ -73,22 +82,36 @@ fn run_case(case: &CheckedCase, control: &Control) -> Result<Case, JobError> {
         lobes,
         data,
         support,
+        population,
+        group,
         orders,
     };
     result.answer = case_answer(&result);
     Ok(result)
 }
 
-fn spectra_data(file: &JobFile, table: &GonioTable, fitted: &[bool], fit: &Fit) -> Result<CaseData, JobError> {
+fn spectra_data(
+    file: &JobFile,
+    table: &GonioTable,
+    fitted: &[bool],
+    fit: &Fit,
+    population: Option<&Population>,
+) -> Result<CaseData, JobError> {
     let model = predict(file, table, &values_by_name(fit))?;
+    // Where specimens are fitted each by itself, a spectrum's model is that of its specimen.
+    let of_specimen = |id: &str| {
+        let mut all = population.iter().flat_map(|all| &all.specimens).flat_map(|specimen| &specimen.spectra);
+        all.find(|one| one.id == id).map(|one| one.fitted.clone())
+    };
     let spectra = table.spectra.iter().zip(model).zip(fitted).map(|((spectrum, model), fitted)| SpectrumFit {
         id: spectrum.id.clone(),
         geometry: spectrum.geometry,
+        without_geometry: spectrum.origin.without_geometry,
         fitted: *fitted,
         wavelengths_nm: spectrum.wavelengths_nm.clone(),
         measured: spectrum.values.clone(),
         sigmas: spectrum.sigmas.clone(),
-        model,
+        model: of_specimen(&spectrum.id).unwrap_or(model),
     });
     Ok(CaseData::Spectra { quantity: table.quantity, compare: file.data.compare, spectra: spectra.collect() })
 }

@@ -58,7 +58,7 @@ pub fn simulate(job: &Job, set: &Values, noise: Noise) -> Result<String, JobErro
                 let factor = deviates(noise.seed, item).next().map_or(1.0, |deviate| 1.0 + noise.share * deviate);
                 let nm = exact_nm * factor;
                 let sigma = if with_sigma { format!(",{}", noise.share * nm.abs()) } else { String::new() };
-                text += &format!("{},{nm}{sigma}\n", name_and_angles(&reading.id, &reading.geometry));
+                text += &format!("{},{nm}{sigma}\n", name_and_angles(&reading.id, Some(&reading.geometry)));
             }
             Ok(text)
         }
@@ -68,20 +68,28 @@ pub fn simulate(job: &Job, set: &Values, noise: Noise) -> Result<String, JobErro
 /// Columns of [`name_and_angles`].
 const NAME_AND_ANGLES: &str = "id,theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg";
 
-/// The first cells of a row. A name with a comma or a quotation mark in it is put in quotation marks (RFC 4180).
-fn name_and_angles(name: &str, geometry: &Geometry) -> String {
-    let Geometry { theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg } = geometry;
+/// The first cells of a row, without the angles where nobody wrote them down. A name with a comma or a quotation mark in it
+/// is put in quotation marks (RFC 4180).
+fn name_and_angles(name: &str, geometry: Option<&Geometry>) -> String {
     let quoted = name.contains([',', '"']).then(|| format!("\"{}\"", name.replace('"', "\"\"")));
-    format!("{},{theta_i_deg},{phi_i_deg},{theta_o_deg},{phi_o_deg}", quoted.as_deref().unwrap_or(name))
+    let name = quoted.as_deref().unwrap_or(name);
+    match geometry {
+        Some(Geometry { theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg }) => {
+            format!("{name},{theta_i_deg},{phi_i_deg},{theta_o_deg},{phi_o_deg}")
+        }
+        None => name.to_owned(),
+    }
 }
 
 fn spectra_csv(table: &GonioTable) -> String {
     let value = table.quantity.column();
     let with_sigma = table.spectra.iter().all(|spectrum| spectrum.sigmas.is_some());
     let sigma_header = if with_sigma { ",sigma" } else { "" };
-    let mut text = format!("{NAME_AND_ANGLES},wavelength_nm,{value}{sigma_header}\n");
+    let without_angles = table.spectra.iter().any(|spectrum| spectrum.origin.without_geometry);
+    let first_columns = if without_angles { "id" } else { NAME_AND_ANGLES };
+    let mut text = format!("{first_columns},wavelength_nm,{value}{sigma_header}\n");
     for spectrum in &table.spectra {
-        let first_cells = name_and_angles(&spectrum.id, &spectrum.geometry);
+        let first_cells = name_and_angles(&spectrum.id, (!without_angles).then_some(&spectrum.geometry));
         for (index, (nm, reading)) in spectrum.wavelengths_nm.iter().zip(&spectrum.values).enumerate() {
             let sigma = spectrum.sigmas.as_ref().map_or_else(String::new, |sigmas| format!(",{}", sigmas[index]));
             text += &format!("{first_cells},{nm},{reading}{sigma}\n");

@@ -274,6 +274,7 @@ fn coarse_spectra(spectra: &[Spectrum]) -> Option<Vec<Spectrum>> {
             .map(|spectrum| Spectrum {
                 id: spectrum.id.clone(),
                 geometry: spectrum.geometry,
+                origin: spectrum.origin.clone(),
                 wavelengths_nm: thin(&spectrum.wavelengths_nm),
                 values: thin(&spectrum.values),
                 sigmas: spectrum.sigmas.as_deref().map(thin),

@@ -98,7 +98,8 @@ pub(super) fn film_support(case: &CheckedCase, best: &Fit, control: &Control) ->
     }))
 }
 
-fn part(table: &GonioTable, keep: impl Fn(usize) -> bool) -> GonioTable {
+/// The spectra of a table that are to be kept.
+pub(super) fn part(table: &GonioTable, keep: impl Fn(usize) -> bool) -> GonioTable {
     let kept = table.spectra.iter().enumerate().filter(|(index, _)| keep(*index));
     GonioTable { quantity: table.quantity, spectra: kept.map(|(_, spectrum)| spectrum.clone()).collect() }
 }

@@ -12,8 +12,8 @@ use toml::de::{DeTable, DeValue};
 use super::{JobError, JobFile};
 use crate::bsdf::cylinder::{CylinderDesign, FilmedCylinderDesign};
 use crate::bsdf::{
-    Design, FeatherDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign, MicrofacetDesign,
-    RoughPlasticDesign,
+    Design, FeatherDesign, FilmAtUnknownAngleDesign, GranierHeidrichDesign, IridescentPlasticDesign, LambertianDesign,
+    MicrofacetDesign, PigmentedBaseDesign, RoughPlasticDesign,
 };
 use crate::measure::ThinFilmLawDesign;
 use crate::nearest::suggestion;
@@ -107,6 +107,8 @@ pub(crate) fn model_slip(kind: &str, model: toml::Value) -> Option<(Vec<String>,
         "cylinder" | "spongy-barb" => deserialise::<CylinderDesign>(model).err()?,
         "filmed-cylinder" => deserialise::<FilmedCylinderDesign>(model).err()?,
         "feather" => deserialise::<FeatherDesign>(model).err()?,
+        "pigmented-base" => deserialise::<PigmentedBaseDesign>(model).err()?,
+        "film-at-unknown-angle" => deserialise::<FilmAtUnknownAngleDesign>(model).err()?,
         "thin-film-law" => deserialise::<ThinFilmLawDesign>(model).err()?,
         _ => return None,
     };

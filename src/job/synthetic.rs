@@ -9,7 +9,7 @@ use super::file::SyntheticFile;
 use super::values::{checked, in_order};
 use super::{JobError, JobFile};
 use crate::fit::Residuals;
-use crate::measure::{Geometry, GonioTable, Spectrum};
+use crate::measure::{Geometry, GonioTable, Origin, Spectrum};
 
 /// Most readings a synthetic table may have.
 const LARGEST_TABLE: f64 = 1e7;
@@ -32,6 +32,7 @@ pub(super) fn readings(recipe: &SyntheticFile, file: &JobFile) -> Result<GonioTa
         .map(|(id, geometry)| Spectrum {
             id,
             geometry,
+            origin: Origin::default(),
             values: vec![0.0; wavelengths_nm.len()],
             wavelengths_nm: wavelengths_nm.clone(),
             sigmas: None,

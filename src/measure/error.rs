@@ -309,6 +309,38 @@ pub enum TableProblem {
         /// The one at this place.
         second: String,
     },
+    /// Readings that do not come in the sets that the job says.
+    #[error(
+        "`average_of` is {count}, and the {spectra} spectra that the job keeps are no multiple of it; correct it, or leave the odd ones out by `only`"
+    )]
+    AverageCount {
+        /// Spectra there are.
+        spectra: usize,
+        /// How many the job says make one.
+        count: usize,
+    },
+    /// Readings to be averaged that are not of one thing.
+    #[error(
+        "`average_of` is {count}, but \"{first}\" and \"{second}\" differ in specimen, group, angles or wavelengths; sort the table so that the readings of one place follow each other, or correct `average_of`"
+    )]
+    AverageOfUnlike {
+        /// The first of the set.
+        first: String,
+        /// The one that differs.
+        second: String,
+        /// How many the job says make one.
+        count: usize,
+    },
+    /// Readings without scatter.
+    #[error(
+        "the readings of \"{id}\" and its group are equal at {wavelength_nm} nm, so that `average_of` gives no σ there; are they copies of one another? Take `average_of` away, or narrow `window_nm`"
+    )]
+    NoScatter {
+        /// The mean's name.
+        id: String,
+        /// Where.
+        wavelength_nm: f64,
+    },
     /// One spectrum name with two geometries.
     #[error(
         "the spectrum \"{id}\" has other angles here than in line {first_line}; correct them, or leave `id` out if that column does not name a spectrum"
@@ -318,6 +350,14 @@ pub enum TableProblem {
         id: String,
         /// Its first line.
         first_line: u64,
+    },
+    /// No column of the name that the job says.
+    #[error("no column's name starts with \"{prefix}\"; expected one of these to: {}", columns.join(", "))]
+    NothingStartsWith {
+        /// What the job says.
+        prefix: String,
+        /// Columns of spectra there are.
+        columns: Vec<String>,
     },
     /// Nothing left after the job's choice of rows and wavelengths.
     #[error("of {rows} readings nothing is left: {}; widen the job's choice", left_out(*.by_only, *.by_window, *.by_negative))]

@@ -71,6 +71,11 @@ pub struct SpectraLayout {
     /// Keep only the rows that hold these values in these columns: `{ kept_by_authors = 1 }`. Long tables alone.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub only: BTreeMap<String, Cell>,
+    /// How many spectra that follow each other are readings of one place on one specimen: their mean is then one spectrum, and
+    /// their scatter, pooled over the specimens of a group, its σ.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 2))]
+    pub average_of: Option<usize>,
     /// Whether several spectra may share one geometry. Left out, that is refused as a slip.
     #[serde(default)]
     pub replicates: bool,
@@ -83,6 +88,35 @@ pub struct SpectraLayout {
     /// How the text is written.
     #[serde(default, skip_serializing_if = "TextFormat::is_default")]
     pub text: TextFormat,
+}
+
+impl SpectraLayout {
+    /// A layout with nothing but what it must have.
+    pub fn new(quantity: Quantity, columns: SpectraColumns) -> Self {
+        Self {
+            quantity,
+            columns,
+            percent: None,
+            sigma: None,
+            negative: Negative::Refuse,
+            window_nm: None,
+            stride: 1,
+            only: BTreeMap::new(),
+            average_of: None,
+            replicates: false,
+            wavelength_unit: None,
+            angle_unit: None,
+            text: TextFormat::default(),
+        }
+    }
+
+    /// Whether it says that nobody wrote down where light and viewer stood.
+    pub fn is_without_geometry(&self) -> bool {
+        match &self.columns {
+            SpectraColumns::Long(columns) => columns.angles == Angles::NotRecorded,
+            SpectraColumns::Wide(columns) => columns.angles == WideAngles::NotRecorded,
+        }
+    }
 }
 
 /// Where a table of spectra keeps its numbers.
@@ -105,9 +139,17 @@ pub struct LongColumns {
     pub wavelength: Source,
     /// Column of the readings.
     pub value: String,
-    /// Column that names the spectrum a row belongs to. Left out, rows of equal angles are one spectrum.
+    /// Column that names the spectrum a row belongs to. Left out, rows of equal angles (of one specimen, if there is such a
+    /// column) are one spectrum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub id: Option<String>,
+    /// Column that names the individual. Left out, each spectrum is a specimen of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub specimen: Option<String>,
+    /// Columns whose values set specimens apart that are not to be compared, as species or patch: each group is fitted by
+    /// itself.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub group: Vec<String>,
 }
 
 /// Columns of a wide table.
@@ -118,6 +160,10 @@ pub struct WideColumns {
     pub wavelength: String,
     /// Angles of each spectrum.
     pub angles: WideAngles,
+    /// Leave out the columns whose names do not start so: `cardinal` keeps `cardinal`, `cardinal.1` and so on. For tables
+    /// whose angles are not recorded; elsewhere name the columns under `angles`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub starts_with: Option<String>,
 }
 
 /// Angles of the columns of a wide table.
@@ -128,6 +174,8 @@ pub enum WideAngles {
     Mirror(PerColumn<f64>),
     /// All four angles.
     Four(PerColumn<Geometry>),
+    /// Nobody wrote them down: `angles = "not_recorded"`. Only a model that needs none can be fitted then.
+    NotRecorded,
 }
 
 /// One entry for each spectrum of a wide table.
@@ -185,6 +233,8 @@ pub enum Angles {
     Mirror(Source),
     /// All four angles.
     Four(FourAngles),
+    /// Nobody wrote them down: `angles = "not_recorded"`. Only a model that needs none can be fitted then.
+    NotRecorded,
 }
 
 /// Sources of all four angles.

@@ -24,6 +24,6 @@ pub use layout::{
 };
 pub use peak::{Peak, PeakModel, find_peaks, mirror_cosine};
 pub use read::read_table;
-pub use table::{GonioTable, PeakReading, PeakTable, Quantity, Spectrum, Table};
+pub use table::{GonioTable, Origin, PeakReading, PeakTable, Quantity, Spectrum, Table};
 pub use text::TableText;
 pub use thin_film_law::{PhaseJumps, ThinFilmLaw, ThinFilmLawDesign};

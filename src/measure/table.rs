@@ -46,12 +46,26 @@ pub struct Spectrum {
     pub id: String,
     /// Angles of light and viewer.
     pub geometry: Geometry,
+    /// Whose it is.
+    pub origin: Origin,
     /// Wavelengths, nm.
     pub wavelengths_nm: Vec<f64>,
     /// Readings; a reflectance in percent has been divided by 100.
     pub values: Vec<f64>,
     /// Standard deviation of each reading, where the table gives one.
     pub sigmas: Option<Vec<f64>>,
+}
+
+/// Whose spectrum it is, as far as the table says.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Origin {
+    /// The individual; None where the table names none: then each spectrum is a specimen of its own.
+    pub specimen: Option<String>,
+    /// What sets specimens apart that are not to be compared: species, patch. Empty where the table has no such column.
+    pub group: String,
+    /// Whether nobody wrote down where light and viewer stood. The geometry is then that of the normal, and only a model
+    /// that does not depend on it may be compared with the spectrum.
+    pub without_geometry: bool,
 }
 
 /// A checked gonio table: at least one spectrum, either all with σ or none.
@@ -61,6 +75,13 @@ pub struct GonioTable {
     pub quantity: Quantity,
     /// One spectrum a geometry, in the order of the file.
     pub spectra: Vec<Spectrum>,
+}
+
+impl Spectrum {
+    /// The individual's name: the table's, or the spectrum's own where the table names no individuals.
+    pub fn specimen(&self) -> &str {
+        self.origin.specimen.as_deref().unwrap_or(&self.id)
+    }
 }
 
 /// One peak wavelength read off a spectrum.

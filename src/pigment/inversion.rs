@@ -9,6 +9,9 @@ pub enum InversionError {
     /// A roughness out of range.
     #[error("the roughness beta_n must be between 0 and 1, but {0} was given")]
     Roughness(f64),
+    /// An index that no fibre has.
+    #[error("the refractive index eta of the fibre must be between 1 and 3, but {0} was given")]
+    Index(f64),
     /// Brighter than without absorption.
     #[error("an albedo of {target} cannot be reached: without any absorption this body has {brightest}")]
     TooBright {

@@ -4,13 +4,15 @@
 //! here is a pure shape, about 1 at its reference, so that an amount is the absorption there: σₐ per radius needs no
 //! knowledge of the radius, while a concentration does. To get 1/mm, divide by the radius in mm.
 //!
-//! [`AbsorptionSpectrum`] is one absorber: a power law (melanins), a sum of bands (carotenoids and others), a table.
+//! [`PigmentDesign`] is an absorber as a job types it, [`AbsorptionSpectrum`] is one absorber: a power law (melanins), a sum of bands (carotenoids and others), a table.
 //! [`absorption_from_concentrations`] is the customary pair of melanins in linear RGB. [`chiang_absorption`] guesses the absorption
 //! behind a colour by a published fit, [`solve_decreasing`] finds it exactly for any body whose albedo can be computed.
 
+mod design;
 mod inversion;
 mod spectrum;
 
+pub use design::{BandDesign, ColourRule, PigmentDesign};
 pub use inversion::{InversionError, chiang_absorption, solve_decreasing};
 pub use spectrum::{AbsorptionSpectrum, AbsorptionTable, Band, PigmentError, Scale};
 

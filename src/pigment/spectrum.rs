@@ -21,6 +21,9 @@ pub enum PigmentError {
         /// Height.
         height: f64,
     },
+    /// A sum of nothing.
+    #[error("the list of bands is empty; give at least one, as `{{ peak_nm = 450, width_nm = 30 }}`")]
+    NoBands,
     /// A table that is no function.
     #[error(
         "an absorption table needs at least two wavelengths in nm, positive and ascending, each with a finite absorption, but row {row} holds {wavelength_nm} nm and {absorption}"
@@ -31,6 +34,16 @@ pub enum PigmentError {
         /// Its wavelength.
         wavelength_nm: f64,
         /// Its absorption.
+        absorption: f64,
+    },
+    /// A table of a pigment that would send out light.
+    #[error(
+        "the absorption is {absorption} at {wavelength_nm} nm; expected 0 or more (noise about 0 has to be set to 0, or cut away)"
+    )]
+    Negative {
+        /// Where.
+        wavelength_nm: f64,
+        /// What was found there.
         absorption: f64,
     },
     /// A table asked beyond its ends.
@@ -57,7 +70,8 @@ pub enum Scale {
 }
 
 impl Scale {
-    fn position(self, wavelength_nm: f64) -> f64 {
+    /// Where a wavelength in nm stands on the scale.
+    pub fn position(self, wavelength_nm: f64) -> f64 {
         match self {
             Self::Wavenumber => 1e7 / wavelength_nm,
             Self::Wavelength => wavelength_nm,
@@ -200,7 +214,11 @@ impl AbsorptionSpectrum {
 }
 
 impl Band {
-    fn at(&self, position: f64) -> Result<f64, PigmentError> {
+    /// Absorption at a position in the scale's unit.
+    ///
+    /// # Errors
+    /// [`PigmentError::Band`] if the band has no peak, no width or a negative height.
+    pub fn at(&self, position: f64) -> Result<f64, PigmentError> {
         let Self { peak, width, height } = *self;
         if !(peak > 0.0 && width > 0.0 && height >= 0.0 && peak.is_finite() && width.is_finite() && height.is_finite())
         {

@@ -16,6 +16,22 @@ pub(crate) fn is_mirror(geometry: &Geometry) -> bool {
     (geometry.theta_i_deg - geometry.theta_o_deg).abs() < 1e-6 && (turn - 180.0).abs() < 1e-6
 }
 
+/// A name for each spectrum: its angles, or its own name where nobody wrote them down.
+pub(crate) fn spectrum_names(spectra: &[SpectrumFit]) -> Vec<String> {
+    if spectra.iter().any(|spectrum| spectrum.without_geometry) {
+        return spectra.iter().map(|spectrum| spectrum.id.clone()).collect();
+    }
+    names(spectra.iter().map(|spectrum| &spectrum.geometry))
+}
+
+/// What the names of [`spectrum_names`] mean.
+pub(crate) fn spectrum_meaning(spectra: &[SpectrumFit]) -> &'static str {
+    if spectra.iter().any(|spectrum| spectrum.without_geometry) {
+        return "The table does not say where light and viewer stood.";
+    }
+    meaning(spectra.iter().map(|spectrum| &spectrum.geometry))
+}
+
 /// A name for each geometry, short where all are mirror geometries.
 pub(crate) fn names<'a>(geometries: impl Iterator<Item = &'a Geometry> + Clone) -> Vec<String> {
     let all_mirror = geometries.clone().all(is_mirror);
@@ -88,16 +104,19 @@ pub(crate) fn representative(spectra: &[SpectrumFit]) -> Selection {
         2 => "the one with the median misfit and the one with the largest",
         _ => "some from the smallest misfit to the largest",
     };
+    let place = if spectra.iter().any(|spectrum| spectrum.without_geometry) {
+        String::new()
+    } else if incidences.len() < total {
+        format!("at {} of the {total} incidences of the light, ", incidences.len())
+    } else if total == 1 {
+        "at the one incidence of the light, ".to_owned()
+    } else {
+        format!("at each of the {total} incidences of the light, ")
+    };
     let text = format!(
-        "Of {} spectra {} are shown: at {} of the light, {chosen} (misfit: root mean square residual over the mean \
-         reading).",
+        "Of {} spectra {} are shown: {place}{chosen} (misfit: root mean square residual over the mean reading).",
         spectra.len(),
         indices.len(),
-        if incidences.len() == total {
-            if total == 1 { "the one incidence".to_owned() } else { format!("each of the {total} incidences") }
-        } else {
-            format!("{} of the {total} incidences", incidences.len())
-        },
     );
     Selection { indices, text: Some(text) }
 }

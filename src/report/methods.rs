@@ -76,6 +76,21 @@ const STONE: Work = (
     "Stone M. 1974. Cross-validatory choice and assessment of statistical predictions. Journal of the Royal Statistical \
      Society B 36, 111–147.",
 );
+const VIECHTBAUER_2005: Work = (
+    "Viechtbauer 2005",
+    "Viechtbauer W. 2005. Bias and efficiency of meta-analytic variance estimators in the random-effects model. Journal of \
+     Educational and Behavioral Statistics 30, 261–293.",
+);
+const VIECHTBAUER_2007: Work = (
+    "Viechtbauer 2007",
+    "Viechtbauer W. 2007. Confidence intervals for the amount of heterogeneity in meta-analysis. Statistics in Medicine 26, \
+     37–52.",
+);
+const KNAPP: Work = (
+    "Knapp and Hartung 2003",
+    "Knapp G., Hartung J. 2003. Improved tests for a random effects meta-regression with a single covariate. Statistics in \
+     Medicine 22, 2693–2710.",
+);
 const HURVICH: Work = (
     "Hurvich and Tsai 1989",
     "Hurvich C. M., Tsai C.-L. 1989. Regression and time series model selection in small samples. Biometrika 76, 297–307.",
@@ -145,6 +160,10 @@ pub(crate) fn of(outcome: &Outcome, has_swatches: bool) -> Methods {
             ),
         });
     }
+    if outcome.cases.iter().any(|c| c.population.is_some()) {
+        let text = specimens_text(&mut bibliography);
+        paragraphs.push(Paragraph { heading: "Specimens".to_owned(), text });
+    }
     if has_swatches {
         let sharma = bibliography.cite(SHARMA);
         paragraphs.push(Paragraph {
@@ -156,6 +175,19 @@ pub(crate) fn of(outcome: &Outcome, has_swatches: bool) -> Methods {
         });
     }
     Methods { paragraphs, references: bibliography.works.into_iter().map(|w| w.citation).collect() }
+}
+
+fn specimens_text(bibliography: &mut Bibliography) -> String {
+    let (reml, profile) = (bibliography.cite(VIECHTBAUER_2005), bibliography.cite(VIECHTBAUER_2007));
+    let (knapp, stone) = (bibliography.cite(KNAPP), bibliography.cite(STONE));
+    format!(
+        "Each specimen was fitted by itself. The mean of all residuals at each wavelength, which is misfit that all share, was \
+         taken out of the specimens' errors, and the estimates were combined as random effects: the variance between individuals is that of restricted maximum likelihood {reml} with its Q-profile interval \
+         {profile}, and the mean has the error and the interval of Knapp and Hartung {knapp}, whose factor was not let below \
+         1. Specimens that left a parameter at a bound or undetermined were left out of its mean and spread. Where it was \
+         asked for, each specimen was left out in turn and predicted by a fit to all the others {stone}, and by the mean of \
+         their spectra."
+    )
 }
 
 /// The model's own text, its works cited where it names them, the others at its end; then its materials.

@@ -26,6 +26,7 @@ mod palette;
 mod plot;
 mod plots;
 mod readings;
+mod specimens;
 mod swatch;
 mod sweep;
 mod tables;

@@ -4,6 +4,7 @@ use askama::Template;
 
 use super::methods::{self, Methods};
 use super::plots::Place;
+use super::specimens::{self, Specimens};
 use super::swatch::{self, Swatches};
 use super::tables::{self, Minima, OrderRow, ParameterRow};
 use super::{Chapter, Picture, ReportError, readings};
@@ -86,6 +87,7 @@ struct CaseView<'a> {
     answer: &'a str,
     figures: Vec<(Place, FigureView<'a>)>,
     swatches: Option<SwatchTable>,
+    specimens: Option<Specimens>,
     orders: Vec<OrderRow>,
     has_truth: bool,
     parameters: Vec<ParameterRow>,
@@ -108,6 +110,7 @@ impl<'a> CaseView<'a> {
             answer: &case.answer,
             figures: chapter.pictures.iter().map(|(place, picture)| (*place, FigureView::new(picture))).collect(),
             swatches: swatch::of(case).map(|s| SwatchTable::new(&s)),
+            specimens: case.population.as_ref().map(|all| specimens::of(all, readings::units(case).following)),
             orders: tables::orders(&case.orders),
             has_truth: outcome.synthetic.is_some(),
             parameters: tables::parameters(case, outcome.synthetic.as_ref(), false),

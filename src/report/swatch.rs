@@ -39,7 +39,7 @@ pub(crate) fn of(case: &Case) -> Option<Swatches> {
         return None;
     }
     let selection = angles::representative(spectra);
-    let names = angles::names(spectra.iter().map(|s| &s.geometry));
+    let names = angles::spectrum_names(spectra);
     let chosen: Vec<(&String, Factors)> =
         selection.indices.iter().filter_map(|i| Some((&names[*i], Factors::of(*quantity, &spectra[*i])?))).collect();
     let brightest = chosen

@@ -14,8 +14,9 @@ use barbule::bsdf::cylinder::{
 use barbule::bsdf::spongy_barb::SpongyBarbModel;
 use barbule::bsdf::{
     BarbDesign, BarbuleDesign, Bsdf, CoatedBase, Design, Direction, Distribution, Feather, FeatherDesign,
-    GranierHeidrich, GranierHeidrichDesign, IridescentPlastic, IridescentPlasticDesign, Lambertian, LambertianDesign,
-    MicrofacetDesign, MicrofacetInterface, Model, NormalSource, Oriented, RoughPlastic, RoughPlasticDesign,
+    FilmAtUnknownAngle, FilmAtUnknownAngleDesign, GranierHeidrich, GranierHeidrichDesign, IridescentPlastic,
+    IridescentPlasticDesign, Lambertian, LambertianDesign, MicrofacetDesign, MicrofacetInterface, Model, NormalSource,
+    Oriented, PigmentedBase, PigmentedBaseDesign, RoughPlastic, RoughPlasticDesign,
 };
 use proptest::prelude::*;
 use rand::{Rng, SeedableRng};
@@ -324,6 +325,10 @@ const LAMELLA: &str =
 /// Each model once or more, with lobes wide enough for quick cells.
 fn subjects() -> Vec<Subject> {
     let lambertian = Lambertian::new(&LambertianDesign::default(), &RGB_NM).unwrap();
+    let pigmented = PigmentedBase::new(&PigmentedBaseDesign::default(), &RGB_NM).unwrap();
+    let unknown_angle: FilmAtUnknownAngleDesign =
+        toml::from_str("film = \"keratin\"\nsubstrate = \"bird_melanin\"").unwrap();
+    let unknown_angle = FilmAtUnknownAngle::new(&unknown_angle, &RGB_NM).unwrap();
     let plastic = || {
         RoughPlastic::new(&RoughPlasticDesign { per_channel: per_channel(&["diffuse"]), ..Default::default() }, &RGB_NM)
             .unwrap()
@@ -358,6 +363,8 @@ fn subjects() -> Vec<Subject> {
     let with = |changes: &[(&'static str, f64)]| [&eta[..], changes].concat();
     vec![
         subject("Lambertian", lambertian, &[], &[(30.0, 10.0)]),
+        subject("pigmented base", pigmented, &[], &[(30.0, 10.0)]),
+        subject("film at unknown angle", unknown_angle, &[], &[(30.0, 10.0)]),
         subject("Beckmann", beckmann(), &with(&[("roughness", 0.2)]), &[(15.0, 40.0), (140.0, 0.0)]),
         subject("Beckmann", beckmann(), &with(&[("roughness", 0.6)]), &[(0.0, 0.0), (85.0, 200.0), (100.0, 70.0)]),
         subject(

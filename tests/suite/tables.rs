@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use barbule::measure::{
-    Certainty, Geometry, GonioTable, Guess, SpectraLayout, Table, TableError, TableLayout, TableProblem, TableText,
-    guess_layout, read_table,
+    Certainty, Geometry, GonioTable, Guess, SpectraLayout, Table, TableError, TableLayout, TableText, guess_layout,
+    read_table,
 };
 
 use rand::{Rng, SeedableRng};
@@ -559,8 +559,7 @@ fn real_tables_are_guessed() {
         let text = load(&format!("{name}.csv"));
         let guess = guess_layout(&text).unwrap();
         assert!(guess.notes.iter().any(|note| note.key.ends_with("angles") && note.certainty == Certainty::Missing));
-        let problem = read_table(&text, &guess.layout).unwrap_err().problem.to_string();
-        assert!(problem.starts_with("the job does not give the angles of this spectrum yet"), "{name}: {problem}");
+        assert!(matches!(&guess.layout, TableLayout::Spectra(layout) if layout.is_without_geometry()), "{name}");
     }
 }
 
@@ -569,7 +568,8 @@ fn what_ecologists_export_is_guessed() {
     let (wide, read) = guess("\"\",\"wl\",\"bird-01\",\"bird-02\"\n\"1\",300,12.5,8\n\"2\",301,13,9\n");
     let TableLayout::Spectra(layout) = wide.layout else { panic!("holds spectra") };
     assert_eq!(layout.percent, Some(true));
-    assert!(matches!(*read.unwrap_err().problem, TableProblem::AngleMissing), "01 and 02 are birds, not angles");
+    let Table::Spectra(table) = read.unwrap() else { panic!("holds spectra") };
+    assert!(table.spectra.iter().all(|one| one.origin.without_geometry), "01 and 02 are birds, not angles");
 
     let (named, read) = guess("wl;R_15deg;R_30deg\n300;0,12;0,08\n301;0,13;0,09\n");
     let TableLayout::Spectra(layout) = named.layout else { panic!("holds spectra") };
@@ -625,11 +625,8 @@ replicates = false
 [data.spectra.columns.wide]
 # guess: "wl" runs from 400 to 405, step 5
 wavelength = "wl"
-
-# FILL IN: the file does not hold the angles of its 2 spectra: write the light's inclination in place of each nan, and all four angles if the viewer is not in the mirror direction
-[data.spectra.columns.wide.angles.mirror]
-bird-1 = nan
-bird-2 = nan
+# FILL IN: the file does not hold the angles of its 2 spectra: where you know them, write { mirror = [15, 30, …] }, the light's inclination for each column with the viewer in the mirror direction, or { four = … }; left as it is, only models that need none can be fitted
+angles = "not_recorded"
 "#;
     assert_eq!(teal.commented_toml("data").unwrap(), expected);
 }
@@ -643,7 +640,7 @@ fn slips_in_a_layout_name_line_and_key() {
         (quantity, "quantity = \"reflectance\"\nstep = 5", 4, "unknown field `step`, expected one of"),
         (quantity, "", 2, "missing field `quantity`"),
         ("\"angle\"", "true", 5, "expected a column's name in quotes, or one number for all rows"),
-        ("mirror", "mirrored", 5, "unknown variant `mirrored`, expected `mirror` or `four`"),
+        ("mirror", "mirrored", 5, "unknown variant `mirrored`, expected one of `mirror`, `four`, `not_recorded`"),
     ];
     for (right, wrong, line, text) in cases {
         let found = toml::from_str::<TableLayout>(&LONG.replace(right, wrong)).unwrap_err().to_string();

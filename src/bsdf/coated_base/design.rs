@@ -207,7 +207,7 @@ impl OwnMaterial {
 }
 
 /// Names become parts of parameter names, which stand in expressions.
-pub(super) fn check_name(what: &'static str, name: &str) -> Result<(), ModelError> {
+pub(in crate::bsdf) fn check_name(what: &'static str, name: &str) -> Result<(), ModelError> {
     let mut letters = name.chars();
     let fine = letters.next().is_some_and(char::is_alphabetic) && letters.all(|c| c.is_alphanumeric() || c == '_');
     if fine { Ok(()) } else { Err(ModelError::BadName { what, name: name.to_owned() }) }

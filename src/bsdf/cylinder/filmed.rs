@@ -29,6 +29,7 @@ use crate::bsdf::coated_base::declare_thickness;
 use crate::bsdf::{Bsdf, DesignLayer, Direction, Model, ModelError, Sample};
 use crate::optics::stack::{Layer, transfer};
 use crate::parameter::Parameter;
+use crate::pigment::PigmentDesign;
 
 /// A fibre with layers on it as typed in a job.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -45,6 +46,9 @@ pub struct FilmedCylinderDesign {
     /// Parameters that have one value in each channel: `eta`, `sigma_a`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub per_channel: Vec<String>,
+    /// What absorbs inside the fibre; their amounts then stand in the place of `sigma_a`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pigments: Vec<PigmentDesign>,
 }
 
 /// The filmed cylinder as a model to be fitted.
@@ -63,8 +67,12 @@ impl FilmedCylinderModel {
     /// # Errors
     /// As [`CylinderModel::new`], and for a layer whose name, thickness or material makes no sense.
     pub fn new(design: &FilmedCylinderDesign, wavelengths_nm: &[f64]) -> Result<Self, ModelError> {
-        let bare =
-            CylinderDesign { mapping: design.mapping, lobe: design.lobe, per_channel: design.per_channel.clone() };
+        let bare = CylinderDesign {
+            mapping: design.mapping,
+            lobe: design.lobe,
+            per_channel: design.per_channel.clone(),
+            pigments: design.pigments.clone(),
+        };
         let cylinder = CylinderModel::new(&bare, wavelengths_nm)?;
         let (mut indices, mut parameters) = (Vec::new(), Vec::new());
         for (position, layer) in design.layers.iter().enumerate() {

@@ -4,9 +4,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AzimuthalLobe, Cylinder, CylinderParameters, LongitudinalMapping};
+use crate::bsdf::absorbers::{Absorbers, AmountScale};
 use crate::bsdf::channel_parameters::{ChannelParameter, Declarations};
 use crate::bsdf::{Bsdf, Model, ModelError};
 use crate::parameter::{Parameter, Spread};
+use crate::pigment::PigmentDesign;
 
 /// A fibre as typed in a job.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -19,6 +21,58 @@ pub struct CylinderDesign {
     /// Parameters that have one value in each channel: `eta`, `sigma_a`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub per_channel: Vec<String>,
+    /// What absorbs inside the fibre; their amounts then stand in the place of `sigma_a`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub pigments: Vec<PigmentDesign>,
+}
+
+/// Where σₐ comes from.
+#[derive(Debug, Clone)]
+enum Absorption {
+    /// A parameter of its own.
+    Free(ChannelParameter),
+    /// The amounts of absorbers.
+    Pigments(Absorbers),
+}
+
+impl Absorption {
+    fn declare(
+        design: &CylinderDesign,
+        wavelengths_nm: &[f64],
+        declarations: &mut Declarations,
+    ) -> Result<Self, ModelError> {
+        const UNIT: &str = "1/radius";
+        // Beyond 20 per radius a fibre is black but for its surface.
+        let (default, upper) = (0.2, 20.0);
+        if design.pigments.is_empty() {
+            return Ok(Self::Free(declarations.spectral(parameter(
+                "sigma_a",
+                "σ_a",
+                UNIT,
+                [default, 0.0, upper],
+                "absorption inside the fibre, per radius of it",
+            ))));
+        }
+        if design.per_channel.iter().any(|name| name == "sigma_a") {
+            return Err(ModelError::PigmentsAndAbsorption);
+        }
+        let scale = AmountScale { unit: UNIT, default, upper, fibre: true };
+        Absorbers::declare(&design.pigments, wavelengths_nm, scale, declarations).map(Self::Pigments)
+    }
+}
+
+fn parameter(name: &str, symbol: &str, unit: &'static str, [default, lower, upper]: [f64; 3], text: &str) -> Parameter {
+    Parameter {
+        name: name.to_owned(),
+        symbol: symbol.to_owned(),
+        unit,
+        default,
+        lower,
+        upper,
+        spread: Spread::Linear,
+        scan_step: None,
+        text: text.to_owned(),
+    }
 }
 
 /// The cylinder as a model to be fitted: which parameters it has is fixed, their values are not.
@@ -30,7 +84,7 @@ pub struct CylinderModel {
     eta: ChannelParameter,
     beta_m: usize,
     beta_n: usize,
-    sigma_a: ChannelParameter,
+    sigma_a: Absorption,
     parameters: Vec<Parameter>,
 }
 
@@ -41,17 +95,6 @@ impl CylinderModel {
     /// No wavelengths, senseless ones, or a wrong name in `per_channel`.
     pub fn new(design: &CylinderDesign, wavelengths_nm: &[f64]) -> Result<Self, ModelError> {
         let mut declarations = Declarations::new(wavelengths_nm, &design.per_channel)?;
-        let parameter = |name: &str, symbol: &str, unit, [default, lower, upper]: [f64; 3], text: &str| Parameter {
-            name: name.to_owned(),
-            symbol: symbol.to_owned(),
-            unit,
-            default,
-            lower,
-            upper,
-            spread: Spread::Linear,
-            scan_step: None,
-            text: text.to_owned(),
-        };
         let eta = declarations.spectral(parameter(
             "eta",
             "η",
@@ -73,13 +116,7 @@ impl CylinderModel {
             [0.3, 0.02, 1.0],
             "roughness around the fibre: how far lobes spread around it",
         ));
-        let sigma_a = declarations.spectral(parameter(
-            "sigma_a",
-            "σ_a",
-            "1/radius",
-            [0.2, 0.0, 20.0],
-            "absorption inside the fibre, per radius of it",
-        ));
+        let sigma_a = Absorption::declare(design, wavelengths_nm, &mut declarations)?;
         Ok(Self {
             channel_count: wavelengths_nm.len(),
             mapping: design.mapping,
@@ -97,7 +134,10 @@ impl CylinderModel {
         let channels = 0..self.channel_count;
         Cylinder::from_checked(&CylinderParameters {
             eta: channels.clone().map(|channel| self.eta.value(values, channel)).collect(),
-            sigma_a: channels.map(|channel| self.sigma_a.value(values, channel)).collect(),
+            sigma_a: match &self.sigma_a {
+                Absorption::Free(sigma_a) => channels.map(|channel| sigma_a.value(values, channel)).collect(),
+                Absorption::Pigments(absorbers) => absorbers.absorption(values),
+            },
             beta_m: values[self.beta_m],
             beta_n: values[self.beta_n],
             mapping: self.mapping,

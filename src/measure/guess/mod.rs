@@ -1,7 +1,8 @@
 //! Guesses how a table is laid out, from its column names and the size of its numbers.
 //!
 //! A guess is a start for a person who then looks at each note. Nothing is taken for granted that the file does not say:
-//! where the viewer stands is a guess, and angles that the file does not hold stay open as NaN, which no reader accepts.
+//! where the viewer stands is a guess, and of angles that the file does not hold the layout says that nobody recorded them,
+//! which only models that need none accept.
 
 mod comments;
 mod names;
@@ -16,8 +17,8 @@ use scan::{Column, Scan};
 use super::Quantity;
 use super::error::{Place, TableError, TableProblem};
 use super::layout::{
-    AngleUnit, Angles, Cell, FourAngles, LongColumns, Negative, PeaksLayout, PerColumn, SigmaLayout, Source,
-    SpectraColumns, SpectraLayout, TableLayout, TextFormat, WavelengthUnit, WideAngles, WideColumns,
+    AngleUnit, Angles, Cell, FourAngles, LongColumns, PeaksLayout, PerColumn, SigmaLayout, Source, SpectraColumns,
+    SpectraLayout, TableLayout, TextFormat, WavelengthUnit, WideAngles, WideColumns,
 };
 use super::read::read_table;
 use super::text::TableText;
@@ -25,7 +26,7 @@ use super::text::TableText;
 /// A table's layout as far as it can be told, and why.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guess {
-    /// The layout; an angle that nobody can tell is NaN.
+    /// The layout; a light's angle that nobody can tell, where the viewer's is there, is NaN.
     pub layout: TableLayout,
     /// One for each key of the layout, in the order of importance.
     pub notes: Vec<GuessNote>,
@@ -135,11 +136,33 @@ impl<'a> Guesser<'a> {
         if let Some(id) = &id {
             self.note("columns.long.id", Certainty::Guessed, format!("\"{id}\" seems to name each spectrum"));
         }
+        let (specimen, group) = self.owner();
         let sigma = self.sigma();
         let only = self.only();
         let wavelength_unit = wavelength.and_then(|column| self.wavelength_unit(column));
-        let columns = LongColumns { angles, wavelength: wavelength_source, value: value.name.clone(), id };
+        let columns =
+            LongColumns { angles, wavelength: wavelength_source, value: value.name.clone(), id, specimen, group };
         SpectraLayout { sigma, only, wavelength_unit, ..self.readings(SpectraColumns::Long(columns), &[value]) }
+    }
+
+    /// Columns that say whose spectrum a row belongs to.
+    fn owner(&mut self) -> (Option<String>, Vec<String>) {
+        let specimen = self.find(Role::Specimen).map(|column| column.name.clone());
+        if let Some(specimen) = &specimen {
+            self.note(
+                "columns.long.specimen",
+                Certainty::Guessed,
+                format!("\"{specimen}\" seems to name the individual"),
+            );
+        }
+        let groups = self.scan.columns.iter().filter(|column| names::role(&column.name) == Role::Group);
+        let group: Vec<String> = groups.map(|column| column.name.clone()).collect();
+        if !group.is_empty() {
+            let text =
+                "specimens that differ in these are not compared with each other: each group is fitted by itself";
+            self.note("columns.long.group", Certainty::Guessed, text);
+        }
+        (specimen, group)
     }
 
     fn wide(&mut self, wavelength: &'a Column) -> SpectraLayout {
@@ -148,24 +171,27 @@ impl<'a> Guesser<'a> {
             |column: &&Column| column.name != wavelength.name && !column.name.is_empty() && column.numbers > 0;
         let spectra: Vec<&Column> = self.scan.columns.iter().filter(is_spectrum).collect();
         let angles: Vec<Option<f64>> = spectra.iter().map(|column| names::angle_in(&column.name)).collect();
-        let known = angles.iter().all(Option::is_some);
-        if known {
-            let text = "taken from the columns' names; that the viewer stands in the mirror direction is an assumption";
-            self.note("columns.wide.angles", Certainty::Guessed, text);
-        } else {
-            let text = format!(
-                "the file does not hold the angles of its {} spectra: write the light's inclination in place of each nan, and all four angles if the viewer is not in the mirror direction",
-                spectra.len()
-            );
-            self.note("columns.wide.angles", Certainty::Missing, text);
-        }
-        let by_name: BTreeMap<String, f64> = spectra
-            .iter()
-            .zip(&angles)
-            .map(|(column, angle)| (column.name.clone(), angle.filter(|_| known).unwrap_or(f64::NAN)))
-            .collect();
-        let columns =
-            WideColumns { wavelength: wavelength.name.clone(), angles: WideAngles::Mirror(PerColumn::ByName(by_name)) };
+        let known: Option<BTreeMap<String, f64>> =
+            spectra.iter().zip(&angles).map(|(column, angle)| Some((column.name.clone(), (*angle)?))).collect();
+        let angles = match known {
+            Some(by_name) => {
+                let text =
+                    "taken from the columns' names; that the viewer stands in the mirror direction is an assumption";
+                self.note("columns.wide.angles", Certainty::Guessed, text);
+                WideAngles::Mirror(PerColumn::ByName(by_name))
+            }
+            None => {
+                let text = format!(
+                    "the file does not hold the angles of its {} spectra: where you know them, write {{ mirror = [15, 30, …] }}, \
+                     the light's inclination for each column with the viewer in the mirror direction, or {{ four = … }}; left \
+                     as it is, only models that need none can be fitted",
+                    spectra.len()
+                );
+                self.note("columns.wide.angles", Certainty::Missing, text);
+                WideAngles::NotRecorded
+            }
+        };
+        let columns = WideColumns { wavelength: wavelength.name.clone(), angles, starts_with: None };
         let wavelength_unit = self.wavelength_unit(wavelength);
         let readings = self.readings(SpectraColumns::Wide(columns), &spectra);
         SpectraLayout { angle_unit: None, wavelength_unit, ..readings }
@@ -207,7 +233,8 @@ impl<'a> Guesser<'a> {
         let spectra_by_angle = self.scan.columns.iter().filter(with_angle).count() > 1;
         let fits = |column: &&Column| {
             let spectrum = role == Role::ThetaI && spectra_by_angle && with_angle(column);
-            names::role(&column.name) == role && (column.numbers > 0 || role == Role::Id) && !spectrum
+            let is_text = matches!(role, Role::Id | Role::Specimen | Role::Group);
+            names::role(&column.name) == role && (column.numbers > 0 || is_text) && !spectrum
         };
         self.scan.columns.iter().find(fits)
     }
@@ -220,10 +247,11 @@ impl<'a> Guesser<'a> {
             [Role::ThetaI, Role::PhiI, Role::ThetaO, Role::PhiO].map(|role| self.find(role));
         match (theta_i, theta_o) {
             (None, None) => {
-                let text = "the file has no angles: write the light's inclination in place of nan, \
-                            and all four angles if the viewer is not in the mirror direction";
+                let text = "the file has no angles: where you know them, write { mirror = 15 } or { mirror = \"column\" } for the \
+                            light's inclination with the viewer in the mirror direction, or all four; left as it is, only \
+                            models that need none can be fitted";
                 self.note(key, Certainty::Missing, text);
-                Angles::Mirror(Source::Number(f64::NAN))
+                Angles::NotRecorded
             }
             (Some(theta), None) => {
                 let text = format!(
@@ -338,18 +366,10 @@ impl<'a> Guesser<'a> {
             self.note("negative", Certainty::Missing, text);
         }
         SpectraLayout {
-            quantity,
-            columns,
             percent,
-            sigma: None,
-            negative: Negative::Refuse,
-            window_nm: None,
-            stride: 1,
-            only: BTreeMap::new(),
-            replicates: false,
-            wavelength_unit: None,
             angle_unit: self.angle_unit(),
             text: self.scan.format,
+            ..SpectraLayout::new(quantity, columns)
         }
     }
 }

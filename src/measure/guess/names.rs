@@ -14,6 +14,10 @@ pub(super) enum Role {
     Sigma,
     /// Names the spectrum or the row.
     Id,
+    /// Names the individual.
+    Specimen,
+    /// Sets specimens apart: species, patch.
+    Group,
     /// Marks rows to be kept.
     Keep,
     Unknown,
@@ -38,6 +42,10 @@ pub(super) fn role(name: &str) -> Role {
 
     if has(&["sigma", "stdev", "std_", "uncert", "error"]) || word(&["sd", "se", "std", "err"]) {
         Role::Sigma
+    } else if word(&["individual", "specimen", "bird", "animal", "skin"]) {
+        Role::Specimen
+    } else if word(&["species", "taxon", "patch", "part", "region", "site"]) {
+        Role::Group
     } else if word(&["id", "name", "sample", "label"]) || name.ends_with("_id") {
         Role::Id
     } else if has(&["keep", "kept", "valid", "include"]) || word(&["use", "used"]) {

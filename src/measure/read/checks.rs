@@ -82,6 +82,7 @@ pub(super) fn geometry(angles: WrittenAngles, unit: AngleUnit) -> Result<Geometr
             let [theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg] = angles.map(degrees);
             Geometry { theta_i_deg, phi_i_deg, theta_o_deg, phi_o_deg }
         }
+        WrittenAngles::NotRecorded => Geometry::mirror(0.0),
     };
     // No cell gives NaN; a job that was made for its author to complete does.
     if [geometry.theta_i_deg, geometry.phi_i_deg, geometry.theta_o_deg, geometry.phi_o_deg].iter().any(|a| a.is_nan()) {
@@ -106,12 +107,13 @@ pub(super) fn name_of(angles: WrittenAngles, geometry: &Geometry) -> String {
     match angles {
         WrittenAngles::Mirror(_) => format!("{theta_i_deg}°"),
         WrittenAngles::Four(_) => format!("θi {theta_i_deg}° φi {phi_i_deg}° θo {theta_o_deg}° φo {phi_o_deg}°"),
+        WrittenAngles::NotRecorded => String::new(),
     }
 }
 
 /// Finds the second of two things at the same angles (and of the same order, where things have one).
 pub(super) struct Seen {
-    names: BTreeMap<([u64; 4], u32), String>,
+    names: BTreeMap<(String, [u64; 4], u32), String>,
 }
 
 impl Seen {
@@ -119,8 +121,14 @@ impl Seen {
         Self { names: BTreeMap::new() }
     }
 
-    /// Takes note of it, unless it was seen.
-    pub(super) fn note(&mut self, geometry: &Geometry, order: u32, name: &str) -> Result<(), TableProblem> {
+    /// Takes note of it, unless it was seen. Things of two owners are never the same.
+    pub(super) fn note(
+        &mut self,
+        owner: &str,
+        geometry: &Geometry,
+        order: u32,
+        name: &str,
+    ) -> Result<(), TableProblem> {
         // Adding 0 turns −0 into 0.
         let azimuth = |phi: f64| (phi.rem_euclid(360.0) + 0.0).to_bits();
         let inclination = |theta: f64| (theta + 0.0).to_bits();
@@ -130,7 +138,7 @@ impl Seen {
             inclination(geometry.theta_o_deg),
             azimuth(geometry.phi_o_deg),
         ];
-        match self.names.insert((key, order), name.to_owned()) {
+        match self.names.insert((owner.to_owned(), key, order), name.to_owned()) {
             Some(first) => Err(TableProblem::GeometryTwice { first, second: name.to_owned() }),
             None => Ok(()),
         }

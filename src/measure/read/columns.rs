@@ -45,6 +45,7 @@ impl Number {
 pub(super) enum WrittenAngles {
     Mirror(f64),
     Four([f64; 4]),
+    NotRecorded,
 }
 
 impl WrittenAngles {
@@ -53,6 +54,7 @@ impl WrittenAngles {
         match self {
             Self::Mirror(theta) => [theta.to_bits(); 4],
             Self::Four(angles) => angles.map(f64::to_bits),
+            Self::NotRecorded => [0; 4],
         }
     }
 
@@ -61,6 +63,7 @@ impl WrittenAngles {
         match *self {
             Self::Mirror(theta) => [theta, theta],
             Self::Four([theta_i, _, theta_o, _]) => [theta_i, theta_o],
+            Self::NotRecorded => [0.0; 2],
         }
     }
 }
@@ -69,6 +72,7 @@ impl WrittenAngles {
 pub(super) enum AnglesOf {
     Mirror(Number),
     Four([Number; 4]),
+    NotRecorded,
 }
 
 impl AnglesOf {
@@ -79,6 +83,7 @@ impl AnglesOf {
             Angles::Four(four) => {
                 Self::Four([find(&four.theta_i)?, find(&four.phi_i)?, find(&four.theta_o)?, find(&four.phi_o)?])
             }
+            Angles::NotRecorded => Self::NotRecorded,
         })
     }
 
@@ -89,6 +94,7 @@ impl AnglesOf {
             Self::Four([theta_i, phi_i, theta_o, phi_o]) => {
                 WrittenAngles::Four([number(*theta_i)?, number(*phi_i)?, number(*theta_o)?, number(*phi_o)?])
             }
+            Self::NotRecorded => WrittenAngles::NotRecorded,
         })
     }
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use super::columns::{AnglesOf, Number, Only, at};
-use super::spectra::{Written, WrittenReading, WrittenSpectrum};
+use super::spectra::{Owner, Written, WrittenReading, WrittenSpectrum};
 use crate::measure::error::{TableError, TableProblem};
 use crate::measure::layout::{LongColumns, SpectraLayout};
 use crate::measure::text::Rows;
@@ -22,6 +22,8 @@ pub(super) fn collect(
     let sigma_name = layout.sigma.as_ref().and_then(|sigma| sigma.column.clone());
     let sigma_column = sigma_name.as_deref().map(|name| rows.column(name)).transpose()?;
     let id_column = columns.id.as_deref().map(|name| rows.column(name)).transpose()?;
+    let specimen_column = columns.specimen.as_deref().map(|name| rows.column(name)).transpose()?;
+    let group_columns = columns.group.iter().map(|name| rows.column(name)).collect::<Result<Vec<_>, _>>()?;
     let only = Only::find(&layout.only, &rows)?;
 
     let mut written = Written {
@@ -31,8 +33,8 @@ pub(super) fn collect(
         rows: 0,
         left_out: 0,
     };
-    // A spectrum is known by its name where the table has one, else by its angles.
-    let mut known: BTreeMap<(Option<String>, [u64; 4]), usize> = BTreeMap::new();
+    // A spectrum is known by its owner and its name, or its angles where the table has no name for it.
+    let mut known: BTreeMap<(Owner, Option<String>, [u64; 4]), usize> = BTreeMap::new();
     while let Some(row) = rows.next()? {
         written.rows += 1;
         if !only.keeps(&row) {
@@ -42,19 +44,22 @@ pub(super) fn collect(
         let angles = angles_of.of(&row, file)?;
         let wavelength = wavelength_of.of(&row).map_err(|problem| at(file, &row, wavelength_of.column(), problem))?;
         let id = id_column.map(|column| row.text(column).to_owned());
-        let key = (id.clone(), if id.is_some() { [0; 4] } else { angles.bits() });
+        let groups: Vec<&str> = group_columns.iter().map(|&column| row.text(column)).collect();
+        let owner =
+            Owner { specimen: specimen_column.map(|column| row.text(column).to_owned()), group: groups.join(" ") };
+        let key = (owner.clone(), id.clone(), if id.is_some() { [0; 4] } else { angles.bits() });
         let index = match known.entry(key) {
             Entry::Occupied(entry) => *entry.get(),
             Entry::Vacant(entry) => {
                 let angle_column = match &angles_of {
                     AnglesOf::Mirror(theta) => theta.column(),
-                    AnglesOf::Four(_) => None,
+                    AnglesOf::Four(_) | AnglesOf::NotRecorded => None,
                 };
                 let place = at(file, &row, angle_column, TableProblem::EmptyCell).place;
                 let value_column = columns.value.clone();
                 let first_line = row.line;
                 let readings = Vec::new();
-                written.spectra.push(WrittenSpectrum { id, angles, place, first_line, value_column, readings });
+                written.spectra.push(WrittenSpectrum { id, owner, angles, place, first_line, value_column, readings });
                 *entry.insert(written.spectra.len() - 1)
             }
         };

@@ -1,6 +1,7 @@
 //! Reads a table file into checked types: first the cells as they stand ([`columns`], [`long`], [`wide`]), then units,
-//! order and meaning ([`checks`], [`spectra`], [`peaks`]).
+//! order and meaning ([`checks`], [`spectra`], [`average`], [`peaks`]).
 
+mod average;
 mod checks;
 mod columns;
 mod long;

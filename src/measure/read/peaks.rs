@@ -5,7 +5,7 @@ use std::path::Path;
 use super::checks::{self, Seen};
 use super::columns::{AnglesOf, Only, WrittenAngles, at};
 use crate::measure::error::{Place, TableError, TableProblem};
-use crate::measure::layout::PeaksLayout;
+use crate::measure::layout::{Angles, PeaksLayout};
 use crate::measure::table::{PeakReading, PeakTable};
 use crate::measure::text::{Row, TableText};
 
@@ -25,6 +25,11 @@ struct WrittenPeak {
 /// Reads and checks a peak table.
 pub(super) fn read_peaks(text: &TableText, layout: &PeaksLayout) -> Result<PeakTable, TableError> {
     let path = &text.file;
+    if layout.angles == Angles::NotRecorded {
+        let expected = "the angles, without which a peak's wavelength says little; or the whole spectra";
+        let problem = TableProblem::Key { key: "angles", found: "\"not_recorded\"".to_owned(), expected };
+        return Err(TableError::new(path, Place::File, problem));
+    }
     if let Some(sigma) = &layout.sigma {
         checks::check_sigma(sigma).map_err(|problem| TableError::new(path, Place::File, problem))?;
     }
@@ -44,7 +49,7 @@ pub(super) fn read_peaks(text: &TableText, layout: &PeaksLayout) -> Result<PeakT
         let geometry = checks::geometry(peak.angles, unit).map_err(refuse)?;
         let id = peak.id.unwrap_or_else(|| checks::name_of(peak.angles, &geometry));
         if !layout.replicates {
-            seen.note(&geometry, peak.order.unwrap_or(0), &format!("the peak \"{id}\"")).map_err(refuse)?;
+            seen.note("", &geometry, peak.order.unwrap_or(0), &format!("the peak \"{id}\"")).map_err(refuse)?;
         }
         let sigma = layout.sigma.as_ref().map(|sigma| checks::sigma_of(sigma, peak.wavelength, peak.sigma)).transpose();
         let sigma_nm = sigma.map_err(refuse)?.map(|sigma| sigma * factor);

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use super::average::averaged;
 use super::columns::WrittenAngles;
 use super::{checks, long, wide};
+use crate::measure::Geometry;
 use crate::measure::error::{Place, TableError, TableProblem};
 use crate::measure::layout::{AngleUnit, Negative, SpectraColumns, SpectraLayout};
-use crate::measure::table::{GonioTable, Quantity, Spectrum};
+use crate::measure::table::{GonioTable, Origin, Quantity, Spectrum};
 use crate::measure::text::TableText;
 
 /// Ratios to a white standard above this are percents. A mirror-like sample may well send more light into a small
@@ -24,9 +26,18 @@ pub(super) struct Written {
     pub(super) left_out: u64,
 }
 
+/// Whose a spectrum is, as the table's columns say.
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Owner {
+    pub(super) specimen: Option<String>,
+    /// Empty where the table has no such columns.
+    pub(super) group: String,
+}
+
 pub(super) struct WrittenSpectrum {
     /// None where the table names no spectra.
     pub(super) id: Option<String>,
+    pub(super) owner: Owner,
     pub(super) angles: WrittenAngles,
     /// Where its angles stand.
     pub(super) place: Place,
@@ -86,6 +97,15 @@ fn check_keys(layout: &SpectraLayout) -> Result<(), TableProblem> {
     if let Some(sigma) = &layout.sigma {
         checks::check_sigma(sigma)?;
     }
+    if let Some(count) = layout.average_of {
+        if count < 2 {
+            return Err(TableProblem::Key { key: "average_of", found: count.to_string(), expected: "2 or more" });
+        }
+        if layout.sigma.is_some() {
+            let expected = "left out, since `average_of` takes σ from the scatter of the readings";
+            return Err(TableProblem::Key { key: "sigma", found: "given".to_owned(), expected });
+        }
+    }
     if matches!(layout.columns, SpectraColumns::Wide(_)) {
         if !layout.only.is_empty() {
             let expected = "left out, since a row of a wide table holds one wavelength of all spectra; \
@@ -122,19 +142,33 @@ impl Checker<'_> {
         let mut seen = checks::Seen::new();
         let checked = spectra.iter().map(|spectrum| {
             let checked = self.spectrum(spectrum, factor, unit)?;
-            if !self.layout.replicates {
-                let noted = seen.note(&checked.geometry, 0, &checked.id);
+            if !self.layout.replicates && self.layout.average_of.is_none() && !checked.origin.without_geometry {
+                let owner = format!("{}/{:?}", checked.origin.group, checked.origin.specimen);
+                let noted = seen.note(&owner, &checked.geometry, 0, &checked.id);
                 noted.map_err(|problem| TableError::new(self.file, spectrum.place.clone(), problem))?;
             }
             Ok(checked)
         });
-        Ok(GonioTable { quantity: self.layout.quantity, spectra: checked.collect::<Result<_, _>>()? })
+        let mut spectra: Vec<Spectrum> = checked.collect::<Result<_, _>>()?;
+        if let Some(count) = self.layout.average_of {
+            spectra = averaged(&spectra, count).map_err(|problem| TableError::new(self.file, Place::File, problem))?;
+        }
+        Ok(GonioTable { quantity: self.layout.quantity, spectra })
+    }
+
+    /// The name of a spectrum: group, specimen, and its own name or its angles, as far as the table has them.
+    fn name(&self, spectrum: &WrittenSpectrum, geometry: &Geometry) -> String {
+        let Owner { specimen, group } = &spectrum.owner;
+        let own = spectrum.id.clone().unwrap_or_else(|| checks::name_of(spectrum.angles, geometry));
+        let parts = [group.as_str(), specimen.as_deref().unwrap_or_default(), &own];
+        let name = parts.iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join(" ");
+        if name.is_empty() { "the spectrum".to_owned() } else { name }
     }
 
     fn spectrum(&self, spectrum: &WrittenSpectrum, factor: f64, unit: AngleUnit) -> Result<Spectrum, TableError> {
         let refuse = |problem| TableError::new(self.file, spectrum.place.clone(), problem);
         let geometry = checks::geometry(spectrum.angles, unit).map_err(refuse)?;
-        let id = spectrum.id.clone().unwrap_or_else(|| checks::name_of(spectrum.angles, &geometry));
+        let id = self.name(spectrum, &geometry);
         let wavelengths_nm = self.wavelengths_nm(spectrum, factor)?;
         self.check_order(spectrum, &wavelengths_nm, &id)?;
 
@@ -153,6 +187,11 @@ impl Checker<'_> {
         Ok(Spectrum {
             id,
             geometry,
+            origin: Origin {
+                specimen: spectrum.owner.specimen.clone(),
+                group: spectrum.owner.group.clone(),
+                without_geometry: matches!(spectrum.angles, WrittenAngles::NotRecorded),
+            },
             wavelengths_nm: readings.iter().map(|reading| reading.wavelength_nm).collect(),
             values: readings.iter().map(|reading| reading.value * scale).collect(),
             sigmas: sigmas.map(|sigmas| sigmas.iter().map(|sigma| sigma * scale).collect()),

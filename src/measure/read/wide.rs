@@ -1,7 +1,7 @@
 //! Wide tables: one row a wavelength, one column a spectrum.
 
 use super::columns::{WrittenAngles, at};
-use super::spectra::{Written, WrittenReading, WrittenSpectrum};
+use super::spectra::{Owner, Written, WrittenReading, WrittenSpectrum};
 use crate::measure::Geometry;
 use crate::measure::error::{Place, TableError, TableProblem};
 use crate::measure::layout::{PerColumn, WideAngles, WideColumns};
@@ -15,11 +15,19 @@ pub(super) fn collect(mut rows: Rows<'_>, columns: &WideColumns) -> Result<Writt
     let wanted = match &columns.angles {
         WideAngles::Mirror(angles) => assign(angles, &rows, &spectrum_columns, |theta| WrittenAngles::Mirror(*theta))?,
         WideAngles::Four(geometries) => assign(geometries, &rows, &spectrum_columns, four)?,
+        WideAngles::NotRecorded => {
+            spectrum_columns.iter().map(|&column| (column, WrittenAngles::NotRecorded)).collect()
+        }
+    };
+    let wanted = match &columns.starts_with {
+        Some(prefix) => starting_with(prefix, wanted, &rows)?,
+        None => wanted,
     };
     let mut spectra: Vec<WrittenSpectrum> = wanted
         .iter()
         .map(|&(column, angles)| WrittenSpectrum {
             id: Some(rows.columns[column].clone()),
+            owner: Owner::default(),
             angles,
             place: Place::Column(rows.columns[column].clone()),
             first_line: 0,
@@ -56,6 +64,21 @@ fn spectrum_columns(rows: &Rows<'_>, wavelength_column: usize) -> Result<Vec<usi
         places.push(rows.column(name)?);
     }
     Ok(places)
+}
+
+/// Those whose names start so.
+fn starting_with(
+    prefix: &str,
+    wanted: Vec<(usize, WrittenAngles)>,
+    rows: &Rows<'_>,
+) -> Result<Vec<(usize, WrittenAngles)>, TableError> {
+    let names: Vec<String> = wanted.iter().map(|(column, _)| rows.columns[*column].clone()).collect();
+    let kept: Vec<_> = wanted.into_iter().filter(|(column, _)| rows.columns[*column].starts_with(prefix)).collect();
+    if kept.is_empty() {
+        let problem = TableProblem::NothingStartsWith { prefix: prefix.to_owned(), columns: names };
+        return Err(TableError::new(rows.file, Place::Line(1), problem));
+    }
+    Ok(kept)
 }
 
 /// The columns that the job wants, in the order of the file, with their angles.

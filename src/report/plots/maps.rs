@@ -21,12 +21,13 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let fitted_spectra: Vec<SpectrumFit> = spectra.iter().filter(|s| s.fitted).cloned().collect();
     let left_out = spectra.len() - fitted_spectra.len();
     let spectra = &fitted_spectra;
-    if spectra.len() < 2 {
+    // Specimens are shown each with its own fit.
+    if spectra.len() < 2 || case.population.is_some() {
         return Vec::new();
     }
     let selection = angles::rows(spectra);
     let shown: Vec<&SpectrumFit> = selection.indices.iter().map(|i| &spectra[*i]).collect();
-    let all_names = angles::names(spectra.iter().map(|s| &s.geometry));
+    let all_names = angles::spectrum_names(spectra);
     let names: Vec<String> = selection.indices.iter().map(|i| all_names[*i].clone()).collect();
     let wavelengths = extent(shown.iter().flat_map(|s| s.wavelengths_nm.iter().copied()));
     let columns = shown.iter().map(|s| s.wavelengths_nm.len()).max().unwrap_or(1).clamp(1, MOST_COLUMNS);
@@ -46,7 +47,13 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let residual_scale = Scale::Diverging { limit: at_share(residuals().map(f64::abs), MOST_OF_ALL) };
     let height = (length(names.len()) * 15.0).clamp(120.0, 360.0);
     let is_mirror = spectra.iter().all(|s| angles::is_mirror(&s.geometry));
-    let y_label = if is_mirror { "inclination θ" } else { "θᵢ → θₒ, φ" };
+    let y_label = if spectra.iter().any(|s| s.without_geometry) {
+        "spectrum"
+    } else if is_mirror {
+        "inclination θ"
+    } else {
+        "θᵢ → θₒ, φ"
+    };
     let cell = |title: &str, rows: Vec<Vec<Option<f64>>>, scale: Scale, label: &str, clipped: &str| Cell {
         title: title.to_owned(),
         charts: vec![Chart {

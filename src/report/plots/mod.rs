@@ -8,6 +8,7 @@ mod peaks;
 mod predicted;
 mod profile;
 mod scatter;
+mod specimens;
 mod spectra;
 mod support;
 
@@ -40,6 +41,7 @@ pub(crate) struct Plot {
 /// Every plot, in the order of the page.
 pub(crate) const ALL: &[Plot] = &[
     Plot { place: Place::Data, draw: spectra::draw },
+    Plot { place: Place::Data, draw: specimens::draw },
     Plot { place: Place::Data, draw: scatter::draw },
     Plot { place: Place::Data, draw: maps::draw },
     Plot { place: Place::Data, draw: peaks::draw },

@@ -14,12 +14,13 @@ const PREDICTED: Look = Look::Line { colour: VERMILION, width: 1.5, dashed: true
 
 pub(super) fn draw(case: &Case) -> Vec<Figure> {
     let CaseData::Spectra { quantity, spectra, .. } = &case.data else { return Vec::new() };
-    if !readings::are_spectra(spectra) {
+    // Specimens are shown each with its own fit.
+    if !readings::are_spectra(spectra) || case.population.is_some() {
         return Vec::new();
     }
     let selection = angles::representative(spectra);
     let shown: Vec<&SpectrumFit> = selection.indices.iter().map(|i| &spectra[*i]).collect();
-    let names = angles::names(spectra.iter().map(|s| &s.geometry));
+    let names = angles::spectrum_names(spectra);
     let wavelengths = extent(shown.iter().flat_map(|s| s.wavelengths_nm.iter().copied()));
     let is_few = shown.len() <= 4;
     let cells = selection.indices.iter().map(|index| {
@@ -63,7 +64,7 @@ pub(super) fn draw(case: &Case) -> Vec<Figure> {
     });
     let sentences = [
         selection.text.unwrap_or_default(),
-        angles::meaning(spectra.iter().map(|s| &s.geometry)).to_owned(),
+        angles::spectrum_meaning(spectra).to_owned(),
         quantity_note(*quantity).to_owned(),
         "Residuals are model − measured, in the same unit. Each panel has its own scale of readings and its own of \
          residuals."

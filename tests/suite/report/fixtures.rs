@@ -186,6 +186,7 @@ pub(super) fn film() -> Outcome {
         SpectrumFit {
             id: format!("teal-{i}"),
             geometry: Geometry::mirror(theta),
+            without_geometry: false,
             fitted: i < 12,
             wavelengths_nm: wavelengths.clone(),
             measured,
@@ -222,6 +223,8 @@ pub(super) fn film() -> Outcome {
         },
         held_out: None,
         lobes: None,
+        population: None,
+        group: String::new(),
         support: Some(support),
         orders: Vec::new(),
     };
@@ -267,6 +270,7 @@ pub(super) fn paint() -> Outcome {
             spectra.push(SpectrumFit {
                 id: format!("{theta_i}/{theta_o}/{phi_o}"),
                 geometry: Geometry { theta_i_deg: theta_i, phi_i_deg: 0.0, theta_o_deg: theta_o, phi_o_deg: phi_o },
+                without_geometry: false,
                 fitted: !is_gloss,
                 measured: measured.collect(),
                 sigmas: Some(model.iter().map(|m| 0.02 * m).collect()),
@@ -284,6 +288,8 @@ pub(super) fn paint() -> Outcome {
         data: CaseData::Spectra { quantity: Quantity::Brdf, compare: Compared::Values, spectra },
         held_out: None,
         lobes: None,
+        population: None,
+        group: String::new(),
         support: None,
         orders: Vec::new(),
     };
@@ -361,6 +367,8 @@ pub(super) fn peaks() -> Outcome {
         },
         held_out: None,
         lobes: None,
+        population: None,
+        group: String::new(),
         support: None,
         orders: (1..=5)
             .map(|order| {
