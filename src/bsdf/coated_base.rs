@@ -1,16 +1,42 @@
-//! A rough surface that carries a film or a stack of layers, over a diffuse share.
+//! A rough surface that carries a film or a stack of layers, over a diffuse base.
 //!
-//! f(ωi, ωo) = D(h) G1(ωi) G1(ωo) R(ωi·h; λ) / (4 cosθi cosθo) + ρ/π, 0 where either direction is below the horizon.
+//! ```text
+//! f = D(h) G1(ωi) G1(ωo) R(ωi·h; λ) / (4 cosθi cosθo) + ρ T(θi) T(θo) / (π n_b² (1 − ρ R̄))
+//! ```
 //!
-//! D and G1 are Beckmann's and Smith's (Walter et al. 2007); R is the unpolarised reflectance of the layers for light
-//! that meets a microfacet at cosθ = ωi·h, with the phase of every internal reflection (Yeh 1988). Every microfacet
-//! carries the same parallel layers. What enters the layers is taken as absorbed; the diffuse share ρ stands for all
-//! that comes back from below, and is added without regard to it, so that with a large ρ the sum may exceed what
-//! arrives. Without it the model never reflects more than it receives.
+//! 0 where either direction is below the horizon. D and G1 are Beckmann's and Smith's (Walter et al. 2007); R is the
+//! unpolarised reflectance of the layers for light that meets a microfacet at cosθ = ωi·h, with the phase of every
+//! internal reflection (Yeh 1988). Every microfacet carries the same parallel layers.
 //!
-//! Under a clear coat of index n both directions are refracted into the coat first, R is that of the layers in the coat,
-//! and the result is T(θi) T(θo)/n² times the value inside, T being the coat's Fresnel transmittance. The gloss of the
-//! coat's own surface and light that the coat turns back to the layers are left out.
+//! **Base.** The second term is ours, built as in [`super::RoughPlastic`]: what enters, T, meets a Lambertian base of albedo
+//! ρ in a substrate of index `n_b`, and bounces between it and the layers. T(μ) = 1 − ∫ K(μ, c; α) (1 − t(c)) dc takes off
+//! what the lobe reflects and what the layers absorb in doing so, t being the layers' transmittance; 1 − R̄ =
+//! (2/`n_b`²) ∫ T μ dμ + Ā, where Ā is the share of diffuse light from below that the layers absorb, 0 for clear ones,
+//! taken for smooth layers. What a mirrored ray would lose on a second microfacet, 1 − ∫ K dc, counts as entering. That is
+//! right where R is small, as for any film on a feather; of a rough stack that is nearly a mirror the lost light should
+//! mostly come back as gloss, and here it comes back in the base's colour.
+//!
+//! **Which base.** `n_b` is real, so that a base needs a clear substrate: then its parameter is `diffuse_albedo`, ρ. A
+//! substrate that absorbs takes all that enters; it has `diffuse_share`, s, instead: the share of the light that comes
+//! back diffusely without meeting the layers (dust, broken edges, whatever scatters beside them),
+//! f = (1 − s) D G1 G1 R / (4 cosθi cosθo) + s/π. `base_knots_nm` gives either of them a spectrum. A pigmented tissue
+//! below the layers is thus a clear substrate with a base; to make the substrate itself absorb over such a base, let it be
+//! the last layer.
+//!
+//! | parameter | symbol | unit | default | range |
+//! | --- | --- | --- | --- | --- |
+//! | `<layer>.thickness_nm` of each layer | d | nm | the design's | 5 to 5000 |
+//! | `<material>.…`: index and extinction, see `barbule models` | | | the design's | |
+//! | `roughness` | α | | 0.1 | 0.01 to 1 |
+//! | `diffuse_albedo` (clear substrate) | ρ | | 0 | 0 to 1 |
+//! | `diffuse_share` (absorbing substrate) | s | | 0 | 0 to 1 |
+//!
+//! **Energy.** Reciprocal; never more than arrives comes back, and with clear layers on a white base exactly all, as far
+//! as the tables of T go (within 1e-3 of the sum over all directions, see [`crate::optics::FacetKernel`]).
+//!
+//! **Clear coat.** Under one of index n both directions are refracted into the coat first, R and T are those of the layers
+//! in the coat, and the result is T(θi) T(θo)/n² times the value inside, these T being the coat's Fresnel transmittance.
+//! The gloss of the coat's own surface and light that the coat turns back to the layers are left out.
 
 mod base;
 mod description;
@@ -20,10 +46,9 @@ mod variable_material;
 pub use description::Description;
 pub use design::{Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice, OwnMaterial};
 
-use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-use self::base::Base;
+use self::base::{Base, BaseKind, BoundBase};
 pub(super) use self::design::check_name;
 use self::variable_material::{Channels, VariableMaterial};
 use super::beckmann_lobe::{HalfVector, lobe};
@@ -76,7 +101,8 @@ impl CoatedBase {
         let substrate = layer_materials.split_off(layers.list.len())[0];
 
         parameters.push(roughness());
-        let base = Base::declare(&design.base_knots_nm, wavelengths_nm, &mut parameters)?;
+        let kind = BaseKind::of(materials[substrate].dispersion.absorbs());
+        let base = Base::declare(kind, &design.base_knots_nm, wavelengths_nm, &mut parameters)?;
         Ok(Self {
             design: design.clone(),
             parameters,
@@ -142,11 +168,12 @@ impl Model for CoatedBase {
         // Roughness and then the base's albedos are declared last.
         let (layers_and_roughness, albedos) = values.split_at(values.len() - self.base.count());
         let roughness = layers_and_roughness[layers_and_roughness.len() - 1];
+        let medium = self.medium(&self.channels, values);
         Box::new(BoundCoatedBase {
-            medium: self.medium(&self.channels, values),
             clear_coat: self.design.clear_coat,
             surface: Beckmann::new(roughness),
-            diffuse: self.base.albedo(albedos).into_iter().map(|albedo| albedo / PI).collect(),
+            base: self.base.bind(albedos, roughness, &medium, self.front()),
+            medium,
             sampler: OnceLock::new(),
         })
     }
@@ -158,8 +185,7 @@ struct BoundCoatedBase<'a> {
     medium: LayeredMedium<'a>,
     clear_coat: Option<f64>,
     surface: Beckmann,
-    /// ρ/π in each channel.
-    diffuse: Vec<f64>,
+    base: BoundBase,
     /// What it is drawn from, made at the first draw.
     sampler: OnceLock<CoatSampler>,
 }
@@ -194,24 +220,21 @@ impl BoundCoatedBase<'_> {
     fn sampler(&self) -> &CoatSampler {
         self.sampler.get_or_init(|| {
             let front = self.clear_coat.unwrap_or(1.0);
-            let mut reflectance = vec![0.0; self.diffuse.len()];
+            let mut reflectance = vec![0.0; self.medium.substrate_permittivity().len()];
             CoatSampler::new(self.surface, self.clear_coat, |cosine| {
                 let inside = refracted_cosine(cosine, front);
                 self.medium.reflectance(front, inside, &mut reflectance);
-                (reflectance.iter().sum(), self.diffuse.iter().sum::<f64>() * PI)
+                self.base.albedos(inside, &reflectance)
             })
         })
     }
 
     /// `scale` · f for directions in the medium of index `front` that the layers lie in, both above the horizon.
-    ///
     fn evaluate_layers(&self, front: f64, incoming: &Direction, outgoing: &Direction, scale: f64, values: &mut [f64]) {
         let half = HalfVector::between(incoming, outgoing);
         let lobe = lobe(&self.surface, &half, incoming, outgoing);
         self.medium.reflectance(front, half.cos_facet, values);
-        for (value, diffuse) in values.iter_mut().zip(&self.diffuse) {
-            *value = scale * (lobe * *value + diffuse);
-        }
+        self.base.add(scale, lobe, incoming, outgoing, values);
     }
 }
 

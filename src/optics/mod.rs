@@ -10,6 +10,7 @@
 //! times; it is tested against the reference.
 
 pub(crate) mod elementary;
+mod entering_light;
 pub mod film;
 mod film_kernel;
 pub mod fresnel;
@@ -18,6 +19,7 @@ mod layered;
 mod material;
 mod materials;
 pub mod microfacet;
+mod mirror_facets;
 mod note;
 mod polarised;
 mod quadrature;
@@ -27,6 +29,7 @@ pub mod stack;
 mod stack_kernel;
 mod visible_normals;
 
+pub use entering_light::{EnteringLight, FacetKernel};
 pub use layered::{Arrangement, LayeredMedium, Permittivity, double_wavenumbers};
 pub use material::{Dispersion, IndexTable, MaterialError};
 pub use materials::{Certainty, KnownMaterial, known_material, known_materials};

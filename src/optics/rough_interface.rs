@@ -9,13 +9,12 @@
 //! with μ the cosine of the light's inclination. T + R < 1 on a rough surface: what a second microfacet would catch is
 //! counted as lost.
 //!
-//! The integral over microfacets is taken in spherical coordinates about the light, m = (β, ψ): then the Fresnel factor
-//! and its critical angle depend on β alone, and where the scattered direction dips under the horizon there is a bound
-//! on ψ in closed form. Between the break points in β everything is smooth but for square roots at the ends, which the
-//! substitution β(t) ∝ t²(3 − 2t) takes away.
+//! Both integrals are taken in spherical coordinates about the light, see [`super::mirror_facets`]: then the Fresnel factor
+//! and its critical angle depend on one of the two angles alone.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::mirror_facets::{MirrorFacets, STEEPEST_SLOPE, facing, least_height, over_panels, panel_width};
 use super::{fresnel, gauss_legendre, microfacet::Beckmann};
 
 /// A rough boundary between two clear media, with Beckmann's distribution of slopes, and its power fractions by direct
@@ -34,23 +33,8 @@ pub struct RoughInterface {
     cosine_rule: Vec<(f64, f64)>,
 }
 
-/// What happens to light at a microfacet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Event {
-    Reflection,
-    Transmission,
-}
-
-/// Slopes beyond this many α hold e⁻³⁶ = 2e-16 of the surface.
-const STEEPEST_SLOPE: f64 = 6.0;
-
 /// Nodes a panel.
 const NODES: usize = 32;
-
-/// Widest panel in β: three roughnesses where these are small, and never more than three quarters of a radian.
-fn panel_width(alpha: f64) -> f64 {
-    3.0 * alpha / (1.0 + 4.0 * alpha)
-}
 
 impl RoughInterface {
     /// The boundary with `eta` = index on the far side over index on the light's side, and roughness `alpha` = √2 times
@@ -59,8 +43,8 @@ impl RoughInterface {
         Self::with_nodes(eta, alpha, NODES)
     }
 
-    /// The same with another number of nodes a panel, which is how the error is found.
-    fn with_nodes(eta: f64, alpha: f64, nodes: usize) -> Self {
+    /// The same with another number of nodes a panel: more to find the error, fewer where a small one does no harm.
+    pub(super) fn with_nodes(eta: f64, alpha: f64, nodes: usize) -> Self {
         debug_assert!(eta > 0.0 && alpha > 0.0, "index and roughness must be positive, found {eta} and {alpha}");
         Self {
             eta,
@@ -74,12 +58,33 @@ impl RoughInterface {
     /// Share of the power that crosses the interface, of light whose direction makes the cosine 0 < `cos_theta` ≤ 1
     /// with the normal.
     pub fn transmittance(&self, cos_theta: f64) -> f64 {
-        self.fraction(Event::Transmission, cos_theta)
+        debug_assert!(cos_theta > 0.0 && cos_theta <= 1.0, "the light must be above the surface, found {cos_theta}");
+        let theta = cos_theta.acos();
+        let (low, high) = facing(STEEPEST_SLOPE * self.alpha, theta);
+        // The refracted ray reaches the horizon: β_t − β = π/2 − θ with sin β = η sin β_t.
+        let elevation = FRAC_PI_2 - theta;
+        let grazing = (self.eta * elevation.sin()).atan2(1.0 - self.eta * elevation.cos());
+        let mut sum = 0.0;
+        let edges = [low, grazing, high.min(self.critical_angle())];
+        over_panels(panel_width(self.alpha), &self.rule, edges, |beta, weight| {
+            sum += weight * self.transmitting_ring(theta, cos_theta, beta);
+        });
+        sum * self.microfacets.visible_share(cos_theta) / cos_theta
     }
 
     /// Share of the power that is thrown back at 0 < `cos_theta` ≤ 1.
     pub fn reflectance(&self, cos_theta: f64) -> f64 {
-        self.fraction(Event::Reflection, cos_theta)
+        let mut sum = 0.0;
+        let facets = MirrorFacets {
+            alpha: self.alpha,
+            steepest: STEEPEST_SLOPE,
+            panel_width: panel_width(self.alpha),
+            rule: &self.rule,
+        };
+        facets.visit(cos_theta, self.critical_angle(), |cosine, weight| {
+            sum += weight * fresnel::dielectric(cosine, self.eta).unpolarised();
+        });
+        sum
     }
 
     /// Share of diffuse (Lambertian) light that crosses the interface, 2 ∫ T(μ) μ dμ.
@@ -117,71 +122,21 @@ impl RoughInterface {
         sum
     }
 
-    /// R(μ) or T(μ).
-    fn fraction(&self, event: Event, cos_theta: f64) -> f64 {
-        debug_assert!(cos_theta > 0.0 && cos_theta <= 1.0, "the light must be above the surface, found {cos_theta}");
-        let theta = cos_theta.acos();
-        let edges = self.break_points(event, theta);
-        let mut sum = 0.0;
-        for segment in edges.windows(2) {
-            let (start, length) = (segment[0], segment[1] - segment[0]);
-            if length <= 0.0 {
-                continue;
-            }
-            let panels = (length / panel_width(self.alpha)).ceil().max(1.0);
-            let mut panel = 0.0;
-            while panel < panels {
-                for &(node, weight) in &self.rule {
-                    let t = (panel + node) / panels;
-                    let beta = start + length * t * t * (3.0 - 2.0 * t);
-                    let slope = length * 6.0 * t * (1.0 - t) / panels;
-                    sum += weight * slope * self.ring(event, theta, cos_theta, beta);
-                }
-                panel += 1.0;
-            }
-        }
-        sum * self.microfacets.visible_share(cos_theta) / cos_theta
+    /// Inclination to a microfacet beyond which it reflects everything.
+    fn critical_angle(&self) -> f64 {
+        if self.eta < 1.0 { self.eta.asin() } else { FRAC_PI_2 }
     }
 
-    /// Where the integrand over β is not smooth, in ascending order, with both ends.
-    fn break_points(&self, event: Event, theta: f64) -> Vec<f64> {
-        // Microfacets that are neither too steep to exist nor turned away from the light.
-        let steepest = (STEEPEST_SLOPE * self.alpha).atan();
-        let (low, high) = ((theta - steepest).max(0.0), (theta + steepest).min(FRAC_PI_2));
-        let critical = if self.eta < 1.0 { self.eta.asin() } else { FRAC_PI_2 };
-        let mut edges = match event {
-            // A mirror that leans towards the light by ψ = 0 or away from it (ψ = π) sends the light to the horizon.
-            Event::Reflection => vec![low, FRAC_PI_4 - theta / 2.0, critical, high.min(FRAC_PI_4 + theta / 2.0)],
-            // The refracted ray reaches the horizon: β_t − β = π/2 − θ with sin β = η sin β_t.
-            Event::Transmission => {
-                let elevation = FRAC_PI_2 - theta;
-                let grazing = (self.eta * elevation.sin()).atan2(1.0 - self.eta * elevation.cos());
-                vec![low, grazing, high.min(critical)]
-            }
-        };
-        let end = edges[edges.len() - 1];
-        edges.retain(|&edge| edge >= low && edge <= end);
-        edges.sort_by(f64::total_cmp);
-        edges
-    }
-
-    /// The integral over ψ at one β: cosβ sinβ (F or 1 − F) · 2 ∫ D G1(o) dψ, by symmetry over half a turn.
-    fn ring(&self, event: Event, theta: f64, cos_theta: f64, beta: f64) -> f64 {
+    /// The integral over ψ at one β: cosβ sinβ (1 − F) · 2 ∫ D G1(o) dψ, by symmetry over half a turn.
+    fn transmitting_ring(&self, theta: f64, cos_theta: f64, beta: f64) -> f64 {
         let (sin_beta, cos_beta) = beta.sin_cos();
-        let reflected = fresnel::dielectric(cos_beta, self.eta).unpolarised();
-        // o = scale · m + shift · i, and the height m_z that puts o on the horizon.
+        let transmitted = 1.0 - fresnel::dielectric(cos_beta, self.eta).unpolarised();
+        // o = scale · m − i/η, and the height m_z that puts o on the horizon.
         let refracted_cosine = (1.0 - sin_beta * sin_beta / (self.eta * self.eta)).max(0.0).sqrt();
-        let (factor, scale, shift) = match event {
-            Event::Reflection => (reflected, 2.0 * cos_beta, -1.0),
-            Event::Transmission => (1.0 - reflected, cos_beta / self.eta - refracted_cosine, -1.0 / self.eta),
-        };
-        let lowest = 1.0 / (1.0 + (STEEPEST_SLOPE * self.alpha).powi(2)).sqrt();
-        let horizon = -shift * cos_theta / scale;
-        let (lowest, highest) = match event {
-            Event::Reflection => (lowest.max(horizon), 1.0),
-            Event::Transmission if scale > 0.0 => (lowest, horizon.min(1.0)),
-            Event::Transmission => (lowest, 1.0),
-        };
+        let scale = cos_beta / self.eta - refracted_cosine;
+        let horizon = cos_theta / (self.eta * scale);
+        let (lowest, highest) =
+            (least_height(STEEPEST_SLOPE * self.alpha), if scale > 0.0 { horizon.min(1.0) } else { 1.0 });
         // m_z = base + amplitude · cosψ.
         let base = cos_beta * cos_theta;
         let amplitude = sin_beta * theta.sin();
@@ -193,10 +148,10 @@ impl RoughInterface {
         let mut sum = 0.0;
         for &(node, weight) in &self.rule {
             let m_z = base + amplitude * (start + (end - start) * node).cos();
-            let o_z = scale * m_z + shift * cos_theta;
+            let o_z = scale * m_z - cos_theta / self.eta;
             sum += weight * self.microfacets.density(m_z) * self.microfacets.visible_share(o_z);
         }
-        2.0 * (end - start) * sum * factor * cos_beta * sin_beta
+        2.0 * (end - start) * sum * transmitted * cos_beta * sin_beta
     }
 }
 
@@ -218,8 +173,8 @@ mod tests {
                 let coarse = RoughInterface::new(eta, alpha);
                 let fine = RoughInterface::with_nodes(eta, alpha, 2 * NODES + 7);
                 for cos_theta in [1e-9, 1e-3, 0.01, 0.1, 0.3, critical_cosine(eta) + 0.003, 0.7, 0.92, 0.99, 1.0] {
-                    for event in [Event::Reflection, Event::Transmission] {
-                        let (a, b) = (coarse.fraction(event, cos_theta), fine.fraction(event, cos_theta));
+                    for fraction in [RoughInterface::reflectance, RoughInterface::transmittance] {
+                        let (a, b) = (fraction(&coarse, cos_theta), fraction(&fine, cos_theta));
                         worst = worst.max((a - b).abs() / b.abs().max(1e-3));
                     }
                 }

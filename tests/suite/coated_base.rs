@@ -11,6 +11,8 @@ use barbule::optics::{film, fresnel, known_material};
 use num_complex::Complex64;
 use proptest::prelude::*;
 
+use super::oracle::Oracle;
+
 const WAVELENGTHS_NM: [f64; 11] = [400.0, 430.0, 460.0, 490.0, 520.0, 550.0, 580.0, 610.0, 640.0, 670.0, 700.0];
 
 fn known(name: &str) -> MaterialChoice {
@@ -84,6 +86,54 @@ fn mirror_direction_shows_the_bare_film() {
             }
         }
     }
+}
+
+/// The same against another program's films and stacks (tmm, 12 digits), whatever the roughness.
+#[test]
+fn mirror_direction_agrees_with_the_table_of_films() {
+    let oracle = Oracle::read("tests/oracles/film.csv");
+    let mut count = 0;
+    for row in 0..oracle.rows.len() {
+        let number = |name| oracle.number(row, name);
+        let (n_sub, k_sub, d_nm) = (number("n_sub"), number("k_sub"), number("d_nm"));
+        if !(5.0..=5000.0).contains(&d_nm) {
+            continue;
+        }
+        count += 1;
+        let melanin = MaterialChoice::Own(OwnMaterial {
+            name: "melanin".to_owned(),
+            index: Some(n_sub),
+            extinction: Some(k_sub),
+            ..OwnMaterial::default()
+        });
+        let film = own("film", number("n_film"));
+        let design = match oracle.text(row, "config") {
+            "film_air" => in_air(vec![layer("film", film, d_nm)], known("air")),
+            "film_melanin" => in_air(vec![layer("film", film, d_nm)], melanin),
+            _ => in_air(
+                vec![
+                    layer("outer", film.clone(), d_nm),
+                    layer("upper", melanin.clone(), 100.0),
+                    layer("gap", known("air"), 120.0),
+                    layer("lower", melanin, 100.0),
+                    layer("inner", film, d_nm),
+                ],
+                known("air"),
+            ),
+        };
+        let model = CoatedBase::new(&design, &[number("lambda_nm")]).unwrap();
+        let theta = number("angle_deg").to_radians();
+        for alpha in [0.01, 0.2, 1.0] {
+            let values = values(&model, &[("roughness", alpha)]);
+            let f = evaluate(&model, &values, direction(theta, 0.0), direction(theta, PI))[0];
+            let surface = Beckmann::new(alpha);
+            let masking = surface.visible_share(theta.cos()).powi(2);
+            let found = f * 4.0 * theta.cos().powi(2) / (surface.density(1.0) * masking);
+            let expected = number("R");
+            assert!((found - expected).abs() < 1e-10, "α {alpha}, row {row}: {found} instead of {expected}");
+        }
+    }
+    assert!(count > 800, "only {count} rows have a thickness that a layer may have");
 }
 
 /// The control without layers reflects as Fresnel says, clear or absorbing.
@@ -176,7 +226,7 @@ fn clear_coat_refracts_first() {
     let bare = CoatedBase::new(&cortex(330.0), &WAVELENGTHS_NM).unwrap();
     let coated =
         |index| CoatedBase::new(&Design { clear_coat: Some(index), ..cortex(330.0) }, &WAVELENGTHS_NM).unwrap();
-    let defaults = values(&bare, &[("diffuse_albedo", 0.2), ("roughness", 0.3)]);
+    let defaults = values(&bare, &[("diffuse_share", 0.2), ("roughness", 0.3)]);
     let (incoming, outgoing) = (direction(0.6, 0.2), direction(0.9, 2.0));
     let none = evaluate(&bare, &defaults, incoming, outgoing);
     for (found, expected) in evaluate(&coated(1.0), &defaults, incoming, outgoing).into_iter().zip(none) {
@@ -204,17 +254,17 @@ fn clear_coat_refracts_first() {
 }
 
 /// ∫ f cosθo dωo by the midpoint rule over the half vector's slope, in which a Beckmann lobe is smooth for any α:
-/// dωo = 4 (ωi·h) dωh and dωh = α² cos³θh t dt dφ with t = tanθh/α.
-fn albedo(model: &CoatedBase, values: &[f64], theta: f64) -> Vec<f64> {
-    let alpha = values[values.len() - 2];
+/// dωo = 4 (ωi·h) dωh and dωh = α² cos³θh t dt dφ with t = tanθh/α = 6 w², so that no end has a slope in w.
+pub(super) fn albedo(model: &CoatedBase, values: &[f64], alpha: f64, theta: f64) -> Vec<f64> {
     let incoming = direction(theta, 0.0);
     let bound = model.bind(values);
     let (radii, azimuths) = (160_u32, 128_u32);
-    let (radius_step, azimuth_step) = (6.0 / f64::from(radii), 2.0 * PI / f64::from(azimuths));
+    let (w_step, azimuth_step) = (1.0 / f64::from(radii), 2.0 * PI / f64::from(azimuths));
     let mut sum = vec![0.0; model.channel_count()];
     let mut f = sum.clone();
     for i in 0..radii {
-        let t = (f64::from(i) + 0.5) * radius_step;
+        let w = (f64::from(i) + 0.5) * w_step;
+        let t = 6.0 * w * w;
         let cos_half = 1.0 / (1.0 + (alpha * t).powi(2)).sqrt();
         for j in 0..azimuths {
             let phi = (f64::from(j) + 0.5) * azimuth_step;
@@ -225,7 +275,8 @@ fn albedo(model: &CoatedBase, values: &[f64], theta: f64) -> Vec<f64> {
                 continue;
             }
             bound.evaluate(&incoming, &outgoing, &mut f);
-            let solid_angle = 4.0 * cos_facet * alpha * alpha * cos_half.powi(3) * t * radius_step * azimuth_step;
+            let ring = t * 12.0 * w * w_step * azimuth_step;
+            let solid_angle = 4.0 * cos_facet * alpha * alpha * cos_half.powi(3) * ring;
             for (sum, f) in sum.iter_mut().zip(&f) {
                 *sum += f * outgoing.z * solid_angle;
             }
@@ -252,7 +303,7 @@ fn furnace_stays_below_one() {
     for alpha in [0.05, 0.3, 1.0] {
         for theta_deg in [0.0_f64, 30.0, 60.0, 80.0] {
             let values = values(&model, &[("roughness", alpha)]);
-            highest = albedo(&model, &values, theta_deg.to_radians()).into_iter().fold(highest, f64::max);
+            highest = albedo(&model, &values, alpha, theta_deg.to_radians()).into_iter().fold(highest, f64::max);
         }
     }
     // The quadrature is good to 1e-4; a nearly perfect mirror of little roughness comes near to 1.
@@ -260,19 +311,24 @@ fn furnace_stays_below_one() {
     assert!(highest > 0.95, "the stack is no mirror: {highest}");
 }
 
-/// With vanishing roughness all light goes into the mirror direction, and the albedo is the film's reflectance.
+/// With vanishing roughness all light goes into the mirror direction, and the albedo becomes the film's reflectance:
+/// slopes of α change R by α² times its curvature in θ, so that half the roughness leaves a quarter of the difference.
 #[test]
 fn smooth_limit_is_the_film() {
     let model = CoatedBase::new(&cortex(330.0), &WAVELENGTHS_NM).unwrap();
     for theta_deg in [0.0_f64, 30.0, 60.0] {
         let theta = theta_deg.to_radians();
-        let values = values(&model, &[("roughness", 0.01)]);
-        let mut expected = vec![0.0; 11];
-        model.reflectance_at(&values, theta.cos(), &WAVELENGTHS_NM, &mut expected);
-        for (found, expected) in albedo(&model, &values, theta).into_iter().zip(expected) {
-            // Slopes of 0.01 change R by their square times its curvature in θ.
-            assert!((found - expected).abs() < 2e-3 * (expected + 0.05), "{theta_deg}°: {found} instead of {expected}");
-        }
+        let difference = |alpha: f64| {
+            let values = values(&model, &[("roughness", alpha)]);
+            let mut expected = vec![0.0; 11];
+            model.reflectance_at(&values, theta.cos(), &WAVELENGTHS_NM, &mut expected);
+            let found = albedo(&model, &values, alpha, theta);
+            let differences = found.iter().zip(&expected).map(|(found, expected)| (found - expected).powi(2));
+            (differences.sum::<f64>() / 11.0).sqrt()
+        };
+        let (coarse, fine) = (difference(0.04), difference(0.02));
+        assert!((coarse / fine - 4.0).abs() < 0.4, "{theta_deg}°: {coarse} at α 0.04, {fine} at α 0.02");
+        assert!(difference(0.01) < 1e-4, "{theta_deg}°: {}", difference(0.01));
     }
 }
 
@@ -308,7 +364,7 @@ proptest! {
 #[test]
 fn nothing_comes_from_below_the_horizon() {
     let model = CoatedBase::new(&cortex(330.0), &WAVELENGTHS_NM).unwrap();
-    let values = values(&model, &[("diffuse_albedo", 0.5)]);
+    let values = values(&model, &[("diffuse_share", 0.5)]);
     let (above, below) = (Direction::new(0.0, 0.6, 0.8), Direction::new(0.0, 0.6, -0.8));
     let horizon = Direction::new(1.0, 0.0, 0.0);
     for (incoming, outgoing) in [(above, below), (below, above), (below, below), (above, horizon), (horizon, above)] {

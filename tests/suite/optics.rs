@@ -324,16 +324,85 @@ proptest! {
         let wavenumbers = double_wavenumbers(&wavelengths);
         let thicknesses = layers.iter().map(|&(_, d)| d).collect();
         let mut found = vec![0.0; channels];
-        LayeredMedium::new(&arrangement, &wavenumbers, permittivities, thicknesses)
-            .reflectance(front, cosine, &mut found);
-        for (&wavelength, found) in wavelengths.iter().zip(found) {
+        let medium = LayeredMedium::new(&arrangement, &wavenumbers, permittivities, thicknesses);
+        medium.reflectance(front, cosine, &mut found);
+        let mut passed = vec![0.0; channels];
+        medium.transmittance(front, cosine, &mut passed);
+        for ((&wavelength, found), passed) in wavelengths.iter().zip(found).zip(passed) {
             let real_layers: Vec<Layer> =
                 sequence.iter().map(|&l| layer(index(layers[l].0, wavelength), layers[l].1)).collect();
-            let expected =
-                transfer(front, &real_layers, index(1, wavelength), cosine, wavelength).reflectance.unpolarised();
+            let response = transfer(front, &real_layers, index(1, wavelength), cosine, wavelength);
+            let expected = response.reflectance.unpolarised();
             // A phase of some hundreds carries an error of 1e-13, and a stack of a dozen layers adds them up.
             prop_assert!((found - expected).abs() < 2e-12, "{found} instead of {expected} at {wavelength} nm");
+            // Power into the substrate is asked for where that is clear.
+            if index(1, wavelength).im == 0.0 {
+                let expected = response.transmittance.unpolarised();
+                prop_assert!((passed - expected).abs() < 4e-12, "T {passed} instead of {expected} at {wavelength} nm");
+            }
         }
+    }
+}
+
+/// Diffuse light that meets the layers from the substrate, by midpoints over the reference's reversed stack: the root at
+/// the critical angle costs them some 1e-6.
+#[test]
+fn diffuse_absorptance_from_inside() {
+    let melanin = Complex64::new(1.7, 0.1);
+    for (layers, substrate, wavelength) in [
+        (vec![layer(melanin, 150.0)], 1.56, 500.0),
+        (vec![layer(real(1.56), 330.0), layer(melanin, 120.0)], 1.56, 450.0),
+        (vec![layer(Complex64::new(3.1, 3.3), 8.0), layer(real(1.38), 450.0)], 1.5, 600.0),
+        (vec![layer(real(1.56), 330.0)], 1.5, 500.0),
+    ] {
+        let count = layers.len();
+        let arrangement = Arrangement::new(count + 1, (0..count).collect(), (0..count).collect(), count);
+        let permittivities = layers
+            .iter()
+            .map(|layer| layer.index)
+            .chain([real(substrate)])
+            .map(|index| Permittivity::new(std::iter::once(index.re), std::iter::once(index.im)))
+            .collect();
+        let thicknesses = layers.iter().map(|layer| layer.thickness_nm).collect();
+        let wavenumbers = double_wavenumbers(&[wavelength]);
+        let mut found = [f64::NAN];
+        LayeredMedium::new(&arrangement, &wavenumbers, permittivities, thicknesses)
+            .diffuse_absorptance_inside(1.0, &mut found);
+        let reversed: Vec<Layer> = layers.iter().rev().copied().collect();
+        let steps = 20_000;
+        let at = |i: i32| {
+            let cosine = (f64::from(i) + 0.5) / f64::from(steps);
+            let response = transfer(substrate, &reversed, real(1.0), cosine, wavelength);
+            2.0 * cosine * (1.0 - response.reflectance.unpolarised() - response.transmittance.unpolarised())
+        };
+        let expected = (0..steps).map(at).sum::<f64>() / f64::from(steps);
+        println!("{} instead of {expected}", found[0]);
+        assert!((found[0] - expected).abs() < 1e-5, "{} instead of {expected}", found[0]);
+    }
+}
+
+/// Where the substrate disperses, the critical angle is another in each channel than the one that the rule follows.
+#[test]
+fn diffuse_absorptance_of_a_dispersive_substrate() {
+    let (substrates, wavelengths) = ([1.60, 1.57, 1.55], [400.0, 500.0, 700.0]);
+    let melanin = layer(Complex64::new(1.7, 0.1), 150.0);
+    let of = |substrates: &[f64], wavelengths: &[f64]| {
+        let arrangement = Arrangement::new(2, vec![0], vec![0], 1);
+        let melanin_index = wavelengths.iter().map(|_| melanin.index);
+        let permittivities = vec![
+            Permittivity::new(melanin_index.clone().map(|index| index.re), melanin_index.map(|index| index.im)),
+            Permittivity::new(substrates.iter().copied(), substrates.iter().map(|_| 0.0)),
+        ];
+        let mut found = vec![f64::NAN; substrates.len()];
+        LayeredMedium::new(&arrangement, &double_wavenumbers(wavelengths), permittivities, vec![150.0])
+            .diffuse_absorptance_inside(1.0, &mut found);
+        found
+    };
+    let together = of(&substrates, &wavelengths);
+    for ((substrate, wavelength), found) in substrates.iter().zip(wavelengths).zip(together) {
+        let alone = of(&[*substrate], &[wavelength])[0];
+        println!("{found} instead of {alone}");
+        assert!((found - alone).abs() < 1e-4, "{found} instead of {alone}");
     }
 }
 

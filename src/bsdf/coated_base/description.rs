@@ -1,5 +1,6 @@
 //! The model in words, for the methods section of a paper.
 
+use super::base::BaseKind;
 use super::design::{Design, DesignEntry, DesignLayer, MaterialChoice, OwnMaterial};
 use super::{CoatedBase, VariableMaterial};
 use crate::optics::{Dispersion, KnownMaterial, MaterialNote, Reference, known_material};
@@ -33,7 +34,7 @@ impl CoatedBase {
             }
         }
         Description {
-            text: model_text(&self.design),
+            text: model_text(&self.design, self.base.kind()),
             materials: self.materials.iter().map(|material| self.material_note(material)).collect(),
             references,
         }
@@ -63,7 +64,7 @@ fn known(material: &VariableMaterial) -> Option<&'static KnownMaterial> {
     known_material(&material.name).ok().filter(|known| known.dispersion == material.dispersion)
 }
 
-fn model_text(design: &Design) -> String {
+fn model_text(design: &Design, base: BaseKind) -> String {
     let optics = match design.layers.as_slice() {
         [] => "that of a plain interface (Fresnel), without a film",
         [DesignEntry::Layer(_)] => {
@@ -87,10 +88,16 @@ fn model_text(design: &Design) -> String {
     } else {
         format!("From the outside in: {}, on {substrate}.", entries.join(", "))
     };
+    let diffuse = match base {
+        BaseKind::Below => {
+            "over a Lambertian base below the substrate's surface, which receives what neither the facets reflect nor the \
+             layers absorb and between which and the layers light is summed over all bounces"
+        }
+        BaseKind::Beside => "beside a Lambertian share of the light that does not meet them",
+    };
     format!(
         "The surface is a multitude of microfacets with Gaussian slopes (Beckmann) that shadow each other (Smith; Walter \
-         2007), over a Lambertian share. Each facet reflects unpolarised light; its reflectance is {optics}. {order} \
-         {surrounding}"
+         2007), {diffuse}. Each facet reflects unpolarised light; its reflectance is {optics}. {order} {surrounding}"
     )
 }
 

@@ -18,14 +18,15 @@ pub struct Design {
     /// Layers and periods of layers, from the outside in.
     #[serde(default)]
     pub layers: Vec<DesignEntry>,
-    /// What lies below the last layer, without end.
+    /// What lies below the last layer, without end. A clear one holds a diffuse base, `diffuse_albedo`; in one that
+    /// absorbs nothing comes back, and there is a share that scatters beside the layers, `diffuse_share`.
     pub substrate: MaterialChoice,
     /// Refractive index, 1 to 3, of a thick clear coat over the layers: directions are refracted into it first. The gloss
     /// of the coat itself is left out. Without this key the layers lie in air.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub clear_coat: Option<f64>,
-    /// Wavelengths, nm, rising, between which the base's albedo runs straight: a pigment. Each has a parameter
-    /// `diffuse_albedo.<nm>`. Without this key the base is grey, with the one parameter `diffuse_albedo`.
+    /// Wavelengths, nm, rising, between which the base's albedo or the diffuse share runs straight: a pigment. Each has a
+    /// parameter `diffuse_albedo.<nm>` or `diffuse_share.<nm>`. Without this key it is grey, with one parameter.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub base_knots_nm: Vec<f64>,
 }
