@@ -70,18 +70,18 @@ const MODELS: [FilmModel; 3] = [
         section: "kind = \"coated-base\"\nlayers = [{ name = \"film\", material = { name = \"film\", index = 1.56 }, thickness_nm \
                   = 300 }]\nsubstrate = \"bird_melanin\"\nbase_knots_nm = [445, 525, 645]",
         free: "\"film.thickness_nm\" = { lower = 50, upper = 900 }\n\"film.index\" = { lower = 1.2, upper = 2.2 }\n\
-               roughness = { lower = 0.05, upper = 1 }\n\"diffuse_albedo.445\" = {}\n\"diffuse_albedo.525\" = {}\n\
-               \"diffuse_albedo.645\" = {}\n\"bird_melanin.extinction_scale\" = {}",
+               roughness = { lower = 0.05, upper = 1 }\n\"diffuse_share.445\" = {}\n\"diffuse_share.525\" = {}\n\
+               \"diffuse_share.645\" = {}\n\"bird_melanin.extinction_scale\" = {}",
         truths: [
             (
                 "thin",
-                "\"film.thickness_nm\" = 220\nroughness = 0.25\n\"diffuse_albedo.445\" = 0.1\n\"diffuse_albedo.525\" = 0.06\n\
-                 \"diffuse_albedo.645\" = 0.03",
+                "\"film.thickness_nm\" = 220\nroughness = 0.25\n\"diffuse_share.445\" = 0.1\n\"diffuse_share.525\" = 0.06\n\
+                 \"diffuse_share.645\" = 0.03",
             ),
             (
                 "thick",
-                "\"film.thickness_nm\" = 480\nroughness = 0.4\n\"diffuse_albedo.445\" = 0.02\n\"diffuse_albedo.525\" = 0.03\n\
-                 \"diffuse_albedo.645\" = 0.08",
+                "\"film.thickness_nm\" = 480\nroughness = 0.4\n\"diffuse_share.445\" = 0.02\n\"diffuse_share.525\" = 0.03\n\
+                 \"diffuse_share.645\" = 0.08",
             ),
         ],
     },

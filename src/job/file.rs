@@ -151,6 +151,8 @@ pub enum ModelFile {
     Lambertian(LambertianDesign),
     /// A dielectric fibre along the tangent, averaged over its width: a barb.
     Cylinder(CylinderDesign),
+    /// The same fibre seen so closely that the position across it is known.
+    NearFieldCylinder(CylinderDesign),
     /// The same fibre with a film or a stack on its surface: an iridescent barbule.
     FilmedCylinder(FilmedCylinderDesign),
     /// The same fibre with a sponge inside that scatters one band of wavelengths: a blue barb without iridescence.

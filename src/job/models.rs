@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::JobError;
 use super::file::ModelFile;
-use crate::bsdf::cylinder::{CylinderModel, FilmedCylinderModel};
+use crate::bsdf::cylinder::{CylinderModel, FilmedCylinderModel, NearFieldCylinderModel};
 use crate::bsdf::spongy_barb::SpongyBarbModel;
 use crate::bsdf::{
     CoatedBase, Feather, FilmAtUnknownAngle, GranierHeidrich, IridescentPlastic, Lambertian, MicrofacetInterface,
@@ -27,6 +27,7 @@ impl ModelFile {
             Self::GranierHeidrich(design) => Box::new(GranierHeidrich::new(design, wavelengths_nm)?),
             Self::Lambertian(design) => Box::new(Lambertian::new(design, wavelengths_nm)?),
             Self::Cylinder(design) => oriented(CylinderModel::new(design, wavelengths_nm)?),
+            Self::NearFieldCylinder(design) => oriented(NearFieldCylinderModel::new(design, wavelengths_nm)?),
             Self::FilmedCylinder(design) => oriented(FilmedCylinderModel::new(design, wavelengths_nm)?),
             Self::SpongyBarb(design) => oriented(SpongyBarbModel::new(design, wavelengths_nm)?),
             Self::Feather(design) => oriented(Feather::new(design, wavelengths_nm)?),
@@ -61,6 +62,7 @@ impl ModelFile {
             Self::GranierHeidrich(_) => &GRANIER_HEIDRICH,
             Self::Lambertian(_) => &LAMBERTIAN,
             Self::Cylinder(_) => &CYLINDER,
+            Self::NearFieldCylinder(_) => &NEAR_FIELD_CYLINDER,
             Self::FilmedCylinder(_) => &FILMED_CYLINDER,
             Self::SpongyBarb(_) => &SPONGY_BARB,
             Self::Feather(_) => &FEATHER,
@@ -105,7 +107,7 @@ const WALTER: (&str, &str) = (
 );
 
 /// Every model, in the order in which `barbule models` lists them.
-const CARDS: [&ModelCard; 13] = [
+const CARDS: [&ModelCard; 14] = [
     &COATED_BASE,
     &MICROFACET,
     &ROUGH_PLASTIC,
@@ -113,6 +115,7 @@ const CARDS: [&ModelCard; 13] = [
     &GRANIER_HEIDRICH,
     &LAMBERTIAN,
     &CYLINDER,
+    &NEAR_FIELD_CYLINDER,
     &FILMED_CYLINDER,
     &SPONGY_BARB,
     &FEATHER,
@@ -123,9 +126,12 @@ const CARDS: [&ModelCard; 13] = [
 
 const COATED_BASE: ModelCard = ModelCard {
     kind: "coated-base",
-    text: "A film, a stack of layers or a plain interface inside a rough surface (Beckmann), over a diffuse base.",
+    text: "A film, a stack of layers or a plain interface inside a rough surface (Beckmann), over a diffuse base that receives \
+           what the layers let through.",
     usage: "Reads spectra at any four angles, and peak wavelengths (then without roughness and base, which do not move a \
-            peak). Its parameters are named after the layers and materials of the job.",
+            peak). Its parameters are named after the layers and materials of the job. A clear substrate holds the base, \
+            `diffuse_albedo`; one that absorbs, as here, has a share of light that scatters beside the layers instead, \
+            `diffuse_share`.",
     example: "kind = \"coated-base\"\n\
               layers = [{ name = \"cortex\", material = \"keratin\", thickness_nm = 330.0 }]\n\
               substrate = \"bird_melanin\"",
@@ -196,6 +202,16 @@ const CYLINDER: ModelCard = ModelCard {
     usage: "Reads spectra at any four angles; `tangent_deg` says how the fibre lies. `per_channel` gives the parameters that it \
             names one value a wavelength.",
     example: "kind = \"cylinder\"",
+    works: &[DEON, CHIANG],
+};
+
+const NEAR_FIELD_CYLINDER: ModelCard = ModelCard {
+    kind: "near-field-cylinder",
+    text: "A dielectric fibre along the tangent, seen so closely that the position across it is known (d'Eon et al. 2011; \
+           Chiang et al. 2016).",
+    usage: "Reads spectra at any four angles; `tangent_deg` says how the fibre lies, `h` where across it. `cylinder` is its \
+            mean over `h`.",
+    example: "kind = \"near-field-cylinder\"",
     works: &[DEON, CHIANG],
 };
 

@@ -151,7 +151,7 @@ fn cells(channels: Channels) -> Vec<Cell> {
             channels,
             &format!("{}\nsubstrate = \"bird_melanin\"", layers(&["cortex"])),
             &[],
-            &[roughness, ("cortex.thickness_nm", 150.0, 700.0), ("diffuse_albedo", 0.02, 0.3)],
+            &[roughness, ("cortex.thickness_nm", 150.0, 700.0), ("diffuse_share", 0.02, 0.3)],
             "",
         ),
         cell("cylinder", channels, "", &[("sigma_a", 0.1, 1.5)], &[beta_m, beta_n, tangent, ("eta", 1.45, 1.65)], ""),

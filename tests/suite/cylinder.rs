@@ -4,12 +4,14 @@ use std::f64::consts::PI;
 
 use barbule::bsdf::cylinder::{
     AzimuthalLobe, Cylinder, CylinderDesign, CylinderModel, CylinderParameters, FibreAngles, LongitudinalMapping,
-    mean_attenuation,
+    NearFieldCylinderModel, mean_attenuation,
 };
 use barbule::bsdf::spongy_barb::{SpongeBand, SpongyBarb};
 use barbule::bsdf::{Direction, Model, ModelError};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+
+use super::directions::{RGB_NM, evaluate};
 
 /// Rows of a table in `tests/oracles`, as numbers; an empty cell is NaN.
 fn oracle(name: &str) -> Vec<Vec<f64>> {
@@ -71,6 +73,46 @@ fn near_field_agrees_with_the_oracle() {
     }
     println!("{count} values, worst relative difference {worst:e}");
     assert!(count > 900 && worst < 1e-7);
+}
+
+/// The same rows through the model that a job names: f = S/|n·ωi| at directions made of the table's angles.
+#[test]
+fn near_field_model_agrees_with_the_oracle() {
+    let design = CylinderDesign { per_channel: vec!["sigma_a".to_owned()], ..CylinderDesign::default() };
+    let model = NearFieldCylinderModel::new(&design, &RGB_NM).unwrap();
+    let names: Vec<&str> = model.parameters().iter().map(|parameter| parameter.name.as_str()).collect();
+    assert_eq!(names, ["eta", "beta_m", "beta_n", "sigma_a_r", "sigma_a_g", "sigma_a_b", "h"]);
+    // Around the fibre azimuths turn from y to z; the viewer stands at 90°, in the plane of normal and fibre.
+    let at = |theta: f64, azimuth: f64| {
+        Direction::new(theta.sin(), theta.cos() * azimuth.cos(), theta.cos() * azimuth.sin())
+    };
+    let (mut worst, mut count) = (0.0, 0);
+    for row in oracle("hair.csv") {
+        let (outgoing, incoming) = (at(row[7], 0.5 * PI), at(row[8], 0.5 * PI + row[9]));
+        let values = [row[3], row[1], row[2], row[4], row[5], row[6], row[10]];
+        model.check(&values).unwrap();
+        let found = evaluate(&model, &values, &incoming, &outgoing).into_iter().map(|f| f * incoming.z.abs());
+        compare(&found.collect::<Vec<f64>>(), &row[11..14], &mut worst, &mut count, &row);
+    }
+    println!("{count} values, worst relative difference {worst:e}");
+    assert!(count > 900 && worst < 1e-7);
+}
+
+/// Wherever a white fibre is met, all light goes on its way.
+#[test]
+fn near_field_white_furnace() {
+    let cylinder = fibre(0.3, 0.3, 1.55, &[0.0]);
+    for (h, theta_o) in [(0.0, 0.0), (0.7, 0.4), (-0.95, -1.0)] {
+        // Not even in φ: both halves are summed.
+        let found = sphere_integral(|theta, phi| {
+            let (mut one, mut other) = ([0.0], [0.0]);
+            cylinder.near_field(&FibreAngles::new(theta, theta_o, phi), h, &mut one);
+            cylinder.near_field(&FibreAngles::new(theta, theta_o, -phi), h, &mut other);
+            0.5 * (one[0] + other[0])
+        });
+        // Where the logistic is cut off it has a kink of 1e-3 of its height, which the midpoints feel.
+        assert!((found - 1.0).abs() < 1e-5, "h {h}, viewer at {theta_o}: {found}");
+    }
 }
 
 #[test]

@@ -76,7 +76,7 @@ fn maps_sum_to_albedos() {
 fn every_model_is_drawn_and_its_numbers_kept() {
     let desk = Desk::empty();
     let run = desk.barbule("models --plot lobes").succeeds().prints("rough-plastic-hemisphere.png");
-    assert_eq!(run.out.lines().count(), 2 * 10, "ten models scatter:\n{}", run.out);
+    assert_eq!(run.out.lines().count(), 2 * 13, "thirteen models scatter:\n{}", run.out);
     for line in run.out.lines() {
         let name = line.strip_prefix("lobes/plots/").and_then(|name| name.strip_suffix(".png")).unwrap();
         let numbers = desk.read(&format!("lobes/curves/{name}.csv"));

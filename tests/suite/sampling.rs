@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 
 use barbule::bsdf::cylinder::{
     AzimuthalLobe, Cylinder, CylinderDesign, CylinderModel, CylinderParameters, FilmedCylinderDesign,
-    FilmedCylinderModel, LongitudinalMapping,
+    FilmedCylinderModel, LongitudinalMapping, NearFieldCylinderModel,
 };
 use barbule::bsdf::spongy_barb::SpongyBarbModel;
 use barbule::bsdf::{
@@ -391,8 +391,14 @@ fn subjects() -> Vec<Subject> {
         subject(
             "coated base",
             coated(LAMELLA),
-            &[("roughness", 0.2), ("diffuse_albedo", 0.1)],
+            &[("roughness", 0.2), ("diffuse_share", 0.1)],
             &[(20.0, 0.0), (70.0, 50.0)],
+        ),
+        subject(
+            "coated base over a diffuse base",
+            coated("substrate = \"keratin\"\nlayers = [{ name = \"f\", material = \"chitin\", thickness_nm = 300 }]"),
+            &[("roughness", 0.3), ("diffuse_albedo", 0.8)],
+            &[(40.0, 0.0)],
         ),
         subject(
             "coated base under a clear coat",
@@ -417,6 +423,12 @@ fn subjects() -> Vec<Subject> {
             cylinder("lobe = \"wrapped_gaussian\"\nmapping = \"plain\""),
             &[("beta_n", 0.9)],
             &across[1..2],
+        ),
+        subject(
+            "near-field cylinder",
+            NearFieldCylinderModel::new(&design("per_channel = [\"eta\", \"sigma_a\"]"), &RGB_NM).unwrap(),
+            &with(&[("h", 0.6), ("sigma_a_b", 3.0)]),
+            &across[..2],
         ),
         subject("filmed cylinder", filmed.unwrap(), &[], &across[..2]),
         subject(

@@ -43,6 +43,7 @@ pub use azimuthal::AzimuthalLobe;
 pub use filmed::{FilmedCylinderDesign, FilmedCylinderModel};
 pub use longitudinal::LongitudinalMapping;
 pub use model::{CylinderDesign, CylinderModel};
+pub use near_field::NearFieldCylinderModel;
 pub use tabulated::TabulatedCylinder;
 
 use azimuthal::{NarrowLogistic, TrimmedLogistic, WrappedGaussian};
@@ -245,6 +246,11 @@ impl Cylinder {
         self.groups.iter().map(|group| group.sigma_a.len()).sum()
     }
 
+    /// Index and absorption of each channel.
+    fn channels(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.groups.iter().flat_map(|group| group.sigma_a.iter().map(|&sigma_a| (group.eta, sigma_a)))
+    }
+
     /// Far-field scattering function S, 1/sr, one value a channel: the mean over the fibre's width.
     ///
     /// Error below 1e-6 of the larger of S and 1e-6 of its peak over azimuths, for βₙ from 0.05 to 1.
@@ -353,8 +359,7 @@ impl Cylinder {
     pub fn near_field(&self, angles: &FibreAngles, h: f64, values: &mut [f64]) {
         assert_eq!(values.len(), self.channel_count(), "one value a channel");
         let longitudinal = self.longitudinal.evaluate(angles);
-        let channels = self.groups.iter().flat_map(|group| group.sigma_a.iter().map(|&sigma_a| (group.eta, sigma_a)));
-        for (value, (eta, sigma_a)) in values.iter_mut().zip(channels) {
+        for (value, (eta, sigma_a)) in values.iter_mut().zip(self.channels()) {
             let refraction = Refraction::new(eta, angles);
             *value = match self.lobe {
                 Lobe::Logistic(density) => {

@@ -107,14 +107,7 @@ impl FibreSampler {
             _ => (2.0 * choice.0 - 1.0, 2.0 * on_disk(along).1.clamp(-1.0, 1.0).asin()),
         };
 
-        let cos_theta_i = (1.0 - sin_theta_i * sin_theta_i).max(0.0).sqrt();
-        let (sin_phi, cos_phi) = phi.sin_cos();
-        let (y, z) = if cos_theta_o > 0.0 { (outgoing.y / cos_theta_o, outgoing.z / cos_theta_o) } else { (0.0, 1.0) };
-        let incoming = Direction::new(
-            sin_theta_i,
-            cos_theta_i * (cos_phi * y - sin_phi * z),
-            cos_theta_i * (cos_phi * z + sin_phi * y),
-        );
+        let incoming = direction_around(outgoing, sin_theta_i, phi);
         let density = self.density(&incoming, outgoing);
         // It is 0 at single points of the table, where nothing scatters.
         (density > 0.0).then(|| Sample::scattered(incoming, density))
@@ -141,6 +134,16 @@ impl FibreSampler {
         };
         (1.0 - next) * of_row(row) + next * of_row(row + 1)
     }
+}
+
+/// The direction of this inclination whose azimuth is `phi` beyond the viewer's; for a viewer along the fibre, beyond the
+/// normal's.
+pub(super) fn direction_around(outgoing: &Direction, sin_theta_i: f64, phi: f64) -> Direction {
+    let cos_theta_o = outgoing.y.hypot(outgoing.z);
+    let cos_theta_i = (1.0 - sin_theta_i * sin_theta_i).max(0.0).sqrt();
+    let (sin_phi, cos_phi) = phi.sin_cos();
+    let (y, z) = if cos_theta_o > 0.0 { (outgoing.y / cos_theta_o, outgoing.z / cos_theta_o) } else { (0.0, 1.0) };
+    Direction::new(sin_theta_i, cos_theta_i * (cos_phi * y - sin_phi * z), cos_theta_i * (cos_phi * z + sin_phi * y))
 }
 
 /// (1 + cosφ)/4π, 1/sr: back to the viewer's side, all inclinations alike in their sine.
