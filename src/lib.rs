@@ -1,13 +1,15 @@
 //! Barbule fits a physical model of how a feather looks to measurements of real feathers, and shows how good the fit is.
 //!
-//! The rooms, from the bottom up: [`optics`] and [`pigment`], [`bsdf`], [`measure`], [`render`], [`job`], [`scene`],
-//! [`report`]; each may use what stands before it. [`fit`] stands beside them on [`parameter`] alone and knows nothing of
-//! feathers; `job` is where a measurement, a model and the engine meet. [`sensitivity`] stands beside `fit` and knows
-//! nothing but numbers.
+//! The rooms, from the bottom up: [`optics`] and [`pigment`], [`bsdf`], [`geometry`] and [`measure`], [`render`], [`job`],
+//! [`scene`], [`report`]; each may use what stands before it. [`fit`] stands beside them on [`parameter`] alone and knows
+//! nothing of feathers; `job` is where a measurement, a model and the engine meet. [`sensitivity`] stands beside `fit` and
+//! knows nothing but numbers.
 
 pub mod bsdf;
 pub mod fit;
+pub mod geometry;
 pub mod job;
+mod json_file;
 pub mod measure;
 mod nearest;
 mod number;
@@ -18,3 +20,4 @@ pub mod render;
 pub mod report;
 pub mod scene;
 pub mod sensitivity;
+mod slip;

@@ -2,6 +2,7 @@
 
 mod check;
 mod fit;
+mod geometry;
 mod models;
 mod new;
 mod output;
@@ -34,6 +35,7 @@ enum Command {
     Sweep(sweep::Sweep),
     Check(check::Check),
     Render(render::Render),
+    Geometry(geometry::Geometry),
     Models(models::Models),
     Schema(schema::Schema),
 }
@@ -58,6 +60,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Sweep(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Render(command) => command.run(),
+        Command::Geometry(command) => command.run(),
         Command::Models(command) => command.run(),
         Command::Schema(command) => command.run(),
     };

@@ -3,9 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use barbule::job;
 use barbule::report::write_file;
-use barbule::scene;
+use barbule::{geometry, job, scene};
 use clap::Args;
 
 use super::Ending;
@@ -22,7 +21,7 @@ pub(super) struct Schema {
 
 impl Schema {
     pub(super) fn run(self) -> Result<Ending> {
-        for (name, schema) in job::schemas().into_iter().chain(scene::schemas()) {
+        for (name, schema) in job::schemas().into_iter().chain(scene::schemas()).chain(geometry::schemas()) {
             let path = self.out.join(name);
             write_file(&path, schema.as_bytes())?;
             print(&path.display().to_string())?;

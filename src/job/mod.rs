@@ -52,6 +52,6 @@ pub use sweep::{
     VarianceOf, Varying, View, sweep,
 };
 
-pub(crate) use syntax::{in_words, model_slip, written};
+pub(crate) use syntax::model_slip;
 
 pub use crate::optics::{MaterialNote, Reference};

@@ -16,7 +16,7 @@ use crate::bsdf::{
     MicrofacetDesign, PigmentedBaseDesign, RoughPlasticDesign,
 };
 use crate::measure::ThinFilmLawDesign;
-use crate::nearest::suggestion;
+use crate::slip::{in_words, written};
 
 /// Parses a job, or says in which line and key it goes wrong.
 pub(super) fn parse(text: &str, path: &Path) -> Result<JobFile, JobError> {
@@ -27,7 +27,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<JobFile, JobError> {
     deserialise(value.clone()).map_err(|slip| {
         let slip = in_model(&value, &slip).unwrap_or(slip);
         let section = if slip.keys.is_empty() { String::new() } else { format!("{}: ", written(&slip.keys)) };
-        refused(line_of(text, &slip.keys), format!("{section}{}", in_words(&slip.message)))
+        refused(line_of(text, &slip.keys), format!("{section}{}", in_words(&slip.message, TABLE)))
     })
 }
 
@@ -64,6 +64,9 @@ pub(super) fn keys_of(nested: &str) -> Vec<String> {
     }
     keys
 }
+
+/// What TOML calls a group of keys.
+const TABLE: &str = "a table, as `{ key = value }` or under `[key]`";
 
 /// Where serde gave up, and in which words.
 struct Slip {
@@ -113,71 +116,4 @@ pub(crate) fn model_slip(kind: &str, model: toml::Value) -> Option<(Vec<String>,
         _ => return None,
     };
     Some((slip.keys, slip.message))
-}
-
-/// Nested keys as a person types them.
-pub(crate) fn written(keys: &[String]) -> String {
-    let plain = |key: &str| key.chars().all(|letter| letter.is_ascii_alphanumeric() || "_-".contains(letter));
-    let mut text = String::new();
-    for key in keys {
-        text += &match key.parse::<usize>() {
-            Ok(index) => format!("[{}]", index + 1),
-            Err(_) if plain(key) => format!(".{key}"),
-            Err(_) => format!(".\"{key}\""),
-        };
-    }
-    text.trim_start_matches('.').to_owned()
-}
-
-/// Serde's message in words for people who know no serde. What it does not know it leaves as it is.
-pub(crate) fn in_words(message: &str) -> String {
-    let message = message.trim();
-    let names: Vec<String> = message.split('`').skip(1).step_by(2).map(str::to_owned).collect();
-    let known = |names: &[String]| names.join(", ");
-    let meant = |name: &String, names: &[String]| suggestion(name, names.iter().map(String::as_str));
-    match names.as_slice() {
-        [name, others @ ..] if message.starts_with("unknown field") => {
-            format!("there is no key `{name}` here; known are {}{}", known(others), meant(name, others))
-        }
-        [name, others @ ..] if message.starts_with("unknown variant") => {
-            format!("found `{name}`; expected one of {}{}", known(others), meant(name, others))
-        }
-        [name] if message.starts_with("missing field") => format!("the key `{name}` is missing; add it"),
-        _ => {
-            let length =
-                message.strip_prefix("invalid length ").and_then(|m| m.split_once(", expected an array of length "));
-            if let Some((found, expected)) = length {
-                return format!("found a list of {found}; expected one of {expected}");
-            }
-            let found = message.strip_prefix("invalid type: ").or_else(|| message.strip_prefix("invalid value: "));
-            match found.and_then(|found| found.split_once(", expected ")) {
-                Some((found, expected)) => format!("found {}; expected {}", thing(found), wanted(expected)),
-                None => message.to_owned(),
-            }
-        }
-    }
-}
-
-fn thing(found: &str) -> String {
-    match found.split_once(' ') {
-        Some(("string", text)) => format!("the text {text}"),
-        Some(("integer" | "boolean", value)) => value.replace('`', ""),
-        Some(("floating", value)) => value.replace("point ", "").replace('`', ""),
-        _ if found == "sequence" => "a list".to_owned(),
-        _ if found == "map" => "a table".to_owned(),
-        _ => found.to_owned(),
-    }
-}
-
-fn wanted(expected: &str) -> &str {
-    match expected {
-        "usize" | "u64" | "u32" => "a whole number from 0 up",
-        "f64" => "a number, without quotes",
-        "a string" => "a text in quotes",
-        "a boolean" => "true or false, without quotes",
-        "a sequence" => "a list in square brackets",
-        "path string" => "a path in quotes",
-        _ if expected.starts_with("struct ") || expected == "a map" => "a table, as `{ key = value }` or under `[key]`",
-        _ => expected,
-    }
 }

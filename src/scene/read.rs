@@ -13,7 +13,9 @@ use super::file::{
     DirectionalLightFile, EnvironmentFile, MeshFile, OrthographicFile, PerspectiveFile, PointLightFile, RectangleFile,
     RectangleLightFile, SceneFile, SphereFile, SphereLightFile,
 };
-use crate::job::{in_words, model_slip, written};
+use crate::job::model_slip;
+use crate::json_file::OBJECT;
+use crate::slip::{in_words, written};
 
 /// A scene is typed by people; what is larger than this is something else.
 const LARGEST_FILE: u64 = 16 << 20;
@@ -50,7 +52,7 @@ fn parse(text: &str) -> Result<SceneFile, String> {
     deserialise(value.clone()).map_err(|slip| {
         let slip = within(&value, &slip).unwrap_or(slip);
         let place = if slip.keys.is_empty() { String::new() } else { format!("{}: ", written(&slip.keys)) };
-        format!("{place}{}", in_words(&slip.message))
+        format!("{place}{}", in_words(&slip.message, OBJECT))
     })
 }
 

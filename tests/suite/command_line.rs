@@ -18,7 +18,7 @@ fn refused(job: &str, parts: &[&str]) {
 fn every_command_shows_an_example() {
     let desk = Desk::empty();
     desk.barbule("--help").succeeds().prints("Example");
-    for command in ["new", "fit", "simulate", "sweep", "check", "render", "models", "schema"] {
+    for command in ["new", "fit", "simulate", "sweep", "check", "geometry", "render", "models", "schema"] {
         desk.barbule(&format!("{command} --help")).succeeds().prints("Example").prints(&format!("barbule {command}"));
     }
 }

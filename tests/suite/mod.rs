@@ -15,6 +15,8 @@ mod engine;
 mod feather;
 mod filmed_cylinder;
 mod four_angles;
+mod geometry;
+mod geometry_command;
 mod granier;
 mod jacobian;
 mod jobs;

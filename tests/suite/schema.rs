@@ -29,7 +29,9 @@ fn job_as_json(text: &str) -> Value {
 
 #[test]
 fn the_schemas_are_those_of_this_version() {
-    for (name, expected) in barbule::job::schemas().into_iter().chain(barbule::scene::schemas()) {
+    let schemas =
+        barbule::job::schemas().into_iter().chain(barbule::scene::schemas()).chain(barbule::geometry::schemas());
+    for (name, expected) in schemas {
         let found = fs::read_to_string(shipped("data-schema").join(name)).unwrap_or_default();
         // Git may have turned the line ends.
         assert!(
@@ -45,6 +47,7 @@ fn every_shipped_job_agrees_with_the_schema() {
     let mut jobs = 0;
     for folder in fs::read_dir(shipped("fits")).unwrap() {
         let path = folder.unwrap().path().join("job.toml");
+        // Some folders hold a feather or a scene instead.
         if !path.exists() {
             continue;
         }
@@ -68,6 +71,23 @@ fn every_shipped_scene_agrees_with_the_schema() {
         }
     }
     assert!(scenes > 0);
+}
+
+#[test]
+fn feathers_and_their_summaries_agree_with_the_schemas() {
+    let feathers = schema("feather.schema.json");
+    let summaries = schema("geometry.schema.json");
+    for name in ["feather-primary", "feather-tail", "feather-contour"] {
+        let path = shipped("fits").join(name).join("feather.json");
+        let text = fs::read_to_string(&path).unwrap();
+        let value: Value = serde_json::from_str(&text).unwrap();
+        assert_agrees(&feathers, name, &value);
+        assert!(!feathers.is_valid(&serde_json::from_str(&text.replace("tip_width_mm", "tip_with_mm")).unwrap()));
+
+        let desk = Desk::empty();
+        desk.barbule(&format!("geometry {} --out out --pixels-per-mm 2", path.display())).succeeds();
+        assert_agrees(&summaries, name, &serde_json::from_str(&desk.read("out/geometry.json")).unwrap());
+    }
 }
 
 #[test]
