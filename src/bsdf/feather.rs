@@ -297,6 +297,38 @@ impl Bsdf for BoundFeather<'_> {
         }
     }
 
+    fn evaluate_many(&self, incoming: &[Direction], outgoing: &[Direction], values: &mut [f64]) {
+        if incoming.is_empty() {
+            return;
+        }
+        let channels = values.len() / incoming.len();
+        let shares: Vec<Shares> = incoming.iter().zip(outgoing).map(|(i, o)| self.shares(i, o)).collect();
+        self.barb.evaluate_many(incoming, outgoing, values);
+        for (values, shares) in values.chunks_exact_mut(channels).zip(&shares) {
+            for value in values {
+                *value *= shares.barb;
+            }
+        }
+
+        let mut part = vec![0.0; values.len()];
+        let mut add = |share: fn(&Shares) -> f64, incoming: &[Direction], outgoing: &[Direction]| {
+            self.barbule.evaluate_many(incoming, outgoing, &mut part);
+            let pairs = values.chunks_exact_mut(channels).zip(part.chunks_exact(channels));
+            for ((values, part), shares) in pairs.zip(&shares) {
+                for (value, part) in values.iter_mut().zip(part) {
+                    *value += share(shares) * part;
+                }
+            }
+        };
+        match &self.directions {
+            Some(Barbules { proximal, distal }) => {
+                add(|shares| shares.proximal, &proximal.all_to_frame(incoming), &proximal.all_to_frame(outgoing));
+                add(|shares| shares.distal, &distal.all_to_frame(incoming), &distal.all_to_frame(outgoing));
+            }
+            None => add(|shares| shares.proximal + shares.distal, incoming, outgoing),
+        }
+    }
+
     fn straight_through(&self, incoming: &Direction) -> f64 {
         self.shares(incoming, &-incoming).through
     }

@@ -67,6 +67,10 @@ impl Bsdf for BoundOriented<'_> {
         self.bsdf.evaluate(&self.tangent.to_frame(incoming), &self.tangent.to_frame(outgoing), values);
     }
 
+    fn evaluate_many(&self, incoming: &[Direction], outgoing: &[Direction], values: &mut [f64]) {
+        self.bsdf.evaluate_many(&self.tangent.all_to_frame(incoming), &self.tangent.all_to_frame(outgoing), values);
+    }
+
     fn straight_through(&self, incoming: &Direction) -> f64 {
         self.bsdf.straight_through(&self.tangent.to_frame(incoming))
     }
@@ -107,5 +111,10 @@ impl Tangent {
     /// The direction that [`Tangent::to_frame`] takes to this one.
     pub(super) fn out_of_frame(self, direction: &Direction) -> Direction {
         Self { sin_azimuth: -self.sin_azimuth, ..self }.to_frame(direction)
+    }
+
+    /// [`Tangent::to_frame`] of each direction.
+    pub(super) fn all_to_frame(self, directions: &[Direction]) -> Vec<Direction> {
+        directions.iter().map(|direction| self.to_frame(direction)).collect()
     }
 }

@@ -21,6 +21,7 @@ mod granier;
 mod jacobian;
 mod jobs;
 mod lobes;
+mod many_pairs;
 mod microfacet;
 mod nist;
 mod optics;

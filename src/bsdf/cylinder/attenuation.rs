@@ -39,7 +39,7 @@ impl Attenuation {
     /// Mean over the width of the fibre, ½ ∫ dh, with an error below 1e-12 for η ≥ 1.05.
     pub(super) fn mean(refraction: &Refraction, sigma_a: f64) -> Self {
         let mut mean = Self { direct: [0.0; 3], later: 0.0 };
-        for (&h, &weight) in WIDTH_RULE.sin_gamma.as_flattened().iter().zip(WIDTH_RULE.weights.as_flattened()) {
+        for (&h, &weight) in WIDTH_RULE.sin_gamma.iter().zip(&WIDTH_RULE.weights) {
             let here = Self::at(refraction, h, sigma_a);
             for (sum, share) in mean.direct.iter_mut().zip(here.direct) {
                 *sum += weight * share;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use std::f64::consts::{PI, TAU};
 
-use crate::optics::elementary::exp_of_negative;
+use crate::optics::elementary::quick_exp_of_negative;
 
 /// The density D by which a lobe Nₚ is blurred around the circle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -21,14 +21,15 @@ pub enum AzimuthalLobe {
 
 /// A density of the azimuth, even and of period 2π.
 pub(super) trait Density: Copy {
-    /// The two halves of the fibre, seen at one azimuth.
-    type Halves: Halves;
-
     /// The density at a distance from its peak, 0 to π.
     fn at(self, distance: f64) -> f64;
 
-    /// D(x − ψ) + D(x + ψ) as a function of ψ; `x` between 0 and π.
-    fn halves(self, x: f64) -> Self::Halves;
+    /// What [`Density::both`] needs to know of an azimuth `x` between 0 and π: plain numbers, so that those of many azimuths
+    /// lie in lists of their own.
+    fn seen_from(self, x: f64) -> [f64; 2];
+
+    /// D(x − ψ) + D(x + ψ) at |ψ| between 0 and π: the two halves of a fibre turn light to opposite sides.
+    fn both(self, seen_from: [f64; 2], turn: f64) -> f64;
 
     /// Distance beyond which the density is below e^−32 of its peak.
     fn reach(self) -> f64;
@@ -38,12 +39,6 @@ pub(super) trait Density: Copy {
 
     /// Whether the kink opposite the peak is too weak to disturb a Gauss rule that crosses it.
     fn is_smooth_at_pi(self) -> bool;
-}
-
-/// D(x − ψ) + D(x + ψ) at a fixed x: the two halves of a fibre turn light to opposite sides.
-pub(super) trait Halves: Copy {
-    /// The sum at |ψ| between 0 and π.
-    fn at(self, turn: f64) -> f64;
 }
 
 /// Distance on the circle between two azimuths less than a turn apart.
@@ -58,68 +53,45 @@ pub(super) fn distance_around(difference: f64) -> f64 {
 pub(super) struct TrimmedLogistic {
     inverse_scale: f64,
     normalisation: f64,
+    /// C = e^{−π/s}.
+    half_turn: f64,
 }
 
 impl TrimmedLogistic {
     /// Of roughness βₙ.
     pub(super) fn new(beta_n: f64) -> Self {
         let scale = (PI / 8.0).sqrt() * (0.265 * beta_n + 1.194 * beta_n.powi(2) + 5.372 * beta_n.powi(22));
-        Self { inverse_scale: 1.0 / scale, normalisation: 1.0 / (scale * (0.5 * PI / scale).tanh()) }
+        Self {
+            inverse_scale: 1.0 / scale,
+            normalisation: 1.0 / (scale * (0.5 * PI / scale).tanh()),
+            half_turn: (-PI / scale).exp(),
+        }
     }
-}
 
-impl TrimmedLogistic {
-    /// Whether [`LogisticHalves`] stays in the range of numbers: e^{2π/s} must.
+    /// Whether [`Density::both`] stays in the range of numbers: e^{2π/s} must.
     pub(super) fn is_wide(self) -> bool {
         2.0 * PI * self.inverse_scale < 700.0
     }
 }
 
-/// Two logistic densities for one exponential and one division.
-///
-/// In D ∝ z/(1 + z)², z may be e^{x/s} as well as e^{−x/s}. With A = e^{−x/s}, B = e^{−|ψ|/s} and C = e^{−π/s} the one term is
-/// AB/(A + B)². The other is AB/(1 + AB)², or, where x + |ψ| passes π and is taken from 2π, C²AB/(AB + C²)². With
-/// p = AB/C both have the numerator AB, over (1 + Cp)² and (p + C)²; the smaller denominator is the right one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct LogisticHalves {
-    inverse_scale: f64,
-    normalisation: f64,
-    /// A.
-    to_peak: f64,
-    /// C.
-    half_turn: f64,
-    /// A/C.
-    from_opposite: f64,
-}
-
-impl Halves for LogisticHalves {
-    #[inline(always)]
-    fn at(self, turn: f64) -> f64 {
-        let b = exp_of_negative(-turn * self.inverse_scale);
-        let p = self.from_opposite * b;
-        let first = self.to_peak + b;
-        let second = (p + self.half_turn).min(1.0 + self.half_turn * p);
-        // Neither product is squared, which would leave the range of numbers for narrow lobes.
-        let inverse = 1.0 / (first * second);
-        self.normalisation * (self.to_peak * b * inverse) * ((first * first + second * second) * inverse)
-    }
-}
-
-/// A trimmed logistic so narrow that [`LogisticHalves`] would leave the range of numbers.
+/// A trimmed logistic so narrow that its own [`Density::both`] would leave the range of numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct NarrowLogistic(pub(super) TrimmedLogistic);
 
 impl Density for NarrowLogistic {
-    type Halves = PlainHalves<Self>;
-
     #[inline(always)]
     fn at(self, distance: f64) -> f64 {
         self.0.at(distance)
     }
 
     #[inline(always)]
-    fn halves(self, x: f64) -> PlainHalves<Self> {
-        PlainHalves { density: self, x }
+    fn seen_from(self, x: f64) -> [f64; 2] {
+        [x, 0.0]
+    }
+
+    #[inline(always)]
+    fn both(self, [x, _]: [f64; 2], turn: f64) -> f64 {
+        one_and_other(self, x, turn)
     }
 
     fn reach(self) -> f64 {
@@ -135,40 +107,41 @@ impl Density for NarrowLogistic {
     }
 }
 
-/// Two densities, one after the other.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct PlainHalves<D> {
-    density: D,
-    x: f64,
-}
-
-impl<D: Density> Halves for PlainHalves<D> {
-    #[inline(always)]
-    fn at(self, turn: f64) -> f64 {
-        self.density.at((self.x - turn).abs()) + self.density.at(distance_around(self.x + turn))
-    }
+/// [`Density::both`] as two densities, one after the other.
+#[inline(always)]
+fn one_and_other(density: impl Density, x: f64, turn: f64) -> f64 {
+    density.at((x - turn).abs()) + density.at(distance_around(x + turn))
 }
 
 impl Density for TrimmedLogistic {
-    type Halves = LogisticHalves;
-
     #[inline(always)]
     fn at(self, distance: f64) -> f64 {
-        let z = exp_of_negative(-distance * self.inverse_scale);
+        let z = quick_exp_of_negative(-distance * self.inverse_scale);
         let denominator = 1.0 + z;
         self.normalisation * z / (denominator * denominator)
     }
 
+    /// A = e^{−x/s}, and A/C = e^{(π−x)/s}.
     #[inline(always)]
-    fn halves(self, x: f64) -> LogisticHalves {
-        let to_peak = (-x * self.inverse_scale).exp();
-        LogisticHalves {
-            inverse_scale: self.inverse_scale,
-            normalisation: self.normalisation,
-            to_peak,
-            half_turn: (-PI * self.inverse_scale).exp(),
-            from_opposite: ((PI - x) * self.inverse_scale).exp(),
-        }
+    fn seen_from(self, x: f64) -> [f64; 2] {
+        [quick_exp_of_negative(-x * self.inverse_scale), 1.0 / quick_exp_of_negative((x - PI) * self.inverse_scale)]
+    }
+
+    /// Two densities for one exponential and one division.
+    ///
+    /// In D ∝ z/(1 + z)², z may be e^{x/s} as well as e^{−x/s}. With A = e^{−x/s}, B = e^{−|ψ|/s} and C = e^{−π/s} the one term
+    /// is AB/(A + B)². The other is AB/(1 + AB)², or, where x + |ψ| passes π and is taken from 2π, C²AB/(AB + C²)².
+    /// With p = AB/C both have the numerator AB, over (1 + Cp)² and (p + C)²; the smaller denominator is the right one.
+    #[inline(always)]
+    fn both(self, [to_peak, from_opposite]: [f64; 2], turn: f64) -> f64 {
+        let b = quick_exp_of_negative(-turn * self.inverse_scale);
+        let p = from_opposite * b;
+        let first = to_peak + b;
+        let (beyond, before) = (p + self.half_turn, 1.0 + self.half_turn * p);
+        let second = if beyond < before { beyond } else { before };
+        // Neither product is squared, which would leave the range of numbers for narrow lobes.
+        let inverse = 1.0 / (first * second);
+        self.normalisation * (to_peak * b * inverse) * ((first * first + second * second) * inverse)
     }
 
     /// D(x) is below 4 e^{−x/s} D(0).
@@ -203,11 +176,14 @@ impl WrappedGaussian {
 }
 
 impl Density for WrappedGaussian {
-    type Halves = PlainHalves<Self>;
+    #[inline(always)]
+    fn seen_from(self, x: f64) -> [f64; 2] {
+        [x, 0.0]
+    }
 
     #[inline(always)]
-    fn halves(self, x: f64) -> PlainHalves<Self> {
-        PlainHalves { density: self, x }
+    fn both(self, [x, _]: [f64; 2], turn: f64) -> f64 {
+        one_and_other(self, x, turn)
     }
 
     /// The nearest three images; at β = 1 and π from the peak the next one is 5e-20.
@@ -215,7 +191,7 @@ impl Density for WrappedGaussian {
     fn at(self, distance: f64) -> f64 {
         let image = |shift: f64| {
             let x = distance - shift;
-            exp_of_negative(-x * x * self.half_inverse_variance)
+            quick_exp_of_negative(-x * x * self.half_inverse_variance)
         };
         self.normalisation * (image(0.0) + image(TAU) + image(-TAU))
     }

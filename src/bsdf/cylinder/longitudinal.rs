@@ -13,6 +13,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::FibreAngles;
+use super::pairs::{Lanes, PAIRS, PairAngles};
+use crate::optics::elementary::exp_of_negative;
 
 /// How a roughness βₘ becomes the variance v of the lobe R.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
@@ -67,6 +69,23 @@ impl Longitudinal {
             let inverse_v = self.inverse_variances[p];
             self.normalisations[p] * (exponent * inverse_v).exp() * scaled_bessel_i0(cosine_product * inverse_v)
         })
+    }
+
+    /// Mₚ for p = 0, 1, 2 of many pairs.
+    #[inline(always)]
+    pub(super) fn of_pairs(&self, angles: &PairAngles) -> [Lanes; 3] {
+        let mut lobes: [Lanes; 3] = [[0.0; PAIRS]; 3];
+        for ((lobe, inverse_v), normalisation) in lobes.iter_mut().zip(self.inverse_variances).zip(self.normalisations)
+        {
+            for (pair, lobe) in lobe.iter_mut().enumerate() {
+                let sine_sum = angles.sine_sum[pair];
+                let cosine_difference = angles.cos_theta_i[pair] - angles.cos_theta_o[pair];
+                let exponent = -0.5 * (sine_sum * sine_sum + cosine_difference * cosine_difference);
+                let bessel = branch_free_scaled_bessel_i0(angles.cosine_product[pair] * inverse_v);
+                *lobe = normalisation * exp_of_negative(exponent * inverse_v) * bessel;
+            }
+        }
+        lobes
     }
 }
 
@@ -132,16 +151,35 @@ const INVERSE_SQUARES: [f64; 20] = {
     inverse_squares
 };
 
+/// Where [`scaled_bessel_i0`] changes its form.
+const BESSEL_SWITCH: f64 = 8.0;
+
 /// e^{−x} I₀(x) for x ≥ 0, relative error below 1e-15.
 ///
 /// Up to 8 by the power series Σ (x²/4)^k / k!², whose terms are all positive and fall below 1e-17 of the sum at k = 21;
 /// beyond by [`CHEBYSHEV`].
-pub(super) fn scaled_bessel_i0(x: f64) -> f64 {
-    if x <= 8.0 {
-        let quarter_square = 0.25 * x * x;
-        let series = INVERSE_SQUARES.iter().rev().fold(1.0, |series, factor| 1.0 + series * (quarter_square * factor));
-        return series * (-x).exp();
-    }
+fn scaled_bessel_i0(x: f64) -> f64 {
+    if x <= BESSEL_SWITCH { near_scaled_bessel_i0(x) } else { far_scaled_bessel_i0(x) }
+}
+
+/// [`scaled_bessel_i0`] without a branch, for loops over many x.
+#[inline(always)]
+fn branch_free_scaled_bessel_i0(x: f64) -> f64 {
+    let is_near = x <= BESSEL_SWITCH;
+    let near = near_scaled_bessel_i0(if is_near { x } else { BESSEL_SWITCH });
+    let far = far_scaled_bessel_i0(if is_near { BESSEL_SWITCH } else { x });
+    if is_near { near } else { far }
+}
+
+#[inline(always)]
+fn near_scaled_bessel_i0(x: f64) -> f64 {
+    let quarter_square = 0.25 * x * x;
+    let series = INVERSE_SQUARES.iter().rev().fold(1.0, |series, factor| 1.0 + series * (quarter_square * factor));
+    series * exp_of_negative(-x)
+}
+
+#[inline(always)]
+fn far_scaled_bessel_i0(x: f64) -> f64 {
     // Clenshaw's recurrence.
     let u = 16.0 / x - 1.0;
     let (mut b1, mut b2) = (0.0, 0.0);

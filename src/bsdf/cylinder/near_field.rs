@@ -169,7 +169,7 @@ struct Paths {
 
 impl Paths {
     fn at(angles: &FibreAngles, eta: f64, sigma_a: f64, h: f64) -> Self {
-        let refraction = Refraction::new(eta, angles);
+        let refraction = Refraction::new(eta, angles.sin_theta_o, angles.cos_theta_o);
         let attenuation = Attenuation::at(&refraction, h, sigma_a);
         let ([a, b, c], total) = (attenuation.direct, attenuation.total());
         Self { shares: [a, b, c, attenuation.later].map(|share| share / total), exits: exits(&refraction, h) }

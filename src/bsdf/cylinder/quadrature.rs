@@ -2,32 +2,35 @@
 
 use std::sync::LazyLock;
 
-/// Numbers in a block: what the widest vector registers hold. A loop over the lanes of one block becomes vector
-/// instructions as a whole; rules have whole blocks of nodes, so that none is left over.
+/// Numbers in the widest vector registers. Rules have a multiple of so many nodes, so that none is left over.
 pub(super) const LANES: usize = 8;
 
-/// A number for each of eight nodes.
-pub(super) type Block = [f64; LANES];
+/// The number of rules.
+pub(super) const RULE_COUNT: usize = 6;
 
-/// Blocks of the largest rule.
-pub(super) const MOST_BLOCKS: usize = 6;
+/// Nodes of the largest rule.
+pub(super) const MOST_NODES: usize = RULE_COUNT * LANES;
 
 /// Nodes in (−1, 1) and weights that sum to 2.
 #[derive(Debug, Clone)]
 pub(super) struct Rule {
-    pub(super) nodes: Vec<Block>,
-    pub(super) weights: Vec<Block>,
+    pub(super) nodes: Vec<f64>,
+    pub(super) weights: Vec<f64>,
 }
 
-/// The rules with 1, 2, … [`MOST_BLOCKS`] blocks of nodes.
-static RULES: LazyLock<Vec<Rule>> = LazyLock::new(|| (1..=MOST_BLOCKS).map(Rule::new).collect());
+/// The rules with 8, 16, … [`MOST_NODES`] nodes.
+static RULES: LazyLock<Vec<Rule>> = LazyLock::new(|| (1..=RULE_COUNT).map(|k| Rule::new(k * LANES)).collect());
 
 impl Rule {
+    /// The rule that [`PanelLengths::plan`] names, 0 to [`RULE_COUNT`] − 1.
+    pub(super) fn numbered(number: usize) -> &'static Self {
+        &RULES[number]
+    }
+
     /// Roots of the Legendre polynomial by Newton's method from Tricomi's first guess; ascending.
-    fn new(blocks: usize) -> Self {
-        let count = blocks * LANES;
+    fn new(count: usize) -> Self {
         let n = count as f64;
-        let (nodes, weights): (Vec<f64>, Vec<f64>) = (0..count)
+        let (nodes, weights) = (0..count)
             .map(|k| {
                 let mut x = -(std::f64::consts::PI * (k as f64 + 0.75) / (n + 0.5)).cos();
                 let mut slope = 0.0;
@@ -45,12 +48,12 @@ impl Rule {
                 (x, 2.0 / ((1.0 - x * x) * slope * slope))
             })
             .unzip();
-        Self { nodes: nodes.as_chunks().0.to_vec(), weights: weights.as_chunks().0.to_vec() }
+        Self { nodes, weights }
     }
 }
 
-/// Blocks of [`WidthRule`].
-pub(super) const WIDTH_BLOCKS: usize = 3;
+/// Nodes of [`WidthRule`].
+pub(super) const WIDTH_NODES: usize = 3 * LANES;
 
 /// Mean over the width of a fibre of something that does not depend on azimuths.
 ///
@@ -58,29 +61,24 @@ pub(super) const WIDTH_BLOCKS: usize = 3;
 /// f is 1 there. Nodes in u with γ = (1 − u²) π/2 crowd towards it: the error stays below 1e-13 however near it comes.
 #[derive(Debug, Clone)]
 pub(super) struct WidthRule {
-    pub(super) sin_gamma: [Block; WIDTH_BLOCKS],
-    pub(super) cos_gamma: [Block; WIDTH_BLOCKS],
+    pub(super) sin_gamma: [f64; WIDTH_NODES],
+    pub(super) cos_gamma: [f64; WIDTH_NODES],
     /// Sum to 1.
-    pub(super) weights: [Block; WIDTH_BLOCKS],
+    pub(super) weights: [f64; WIDTH_NODES],
 }
 
 /// The one rule of this kind.
 pub(super) static WIDTH_RULE: LazyLock<WidthRule> = LazyLock::new(|| {
-    let rule = &RULES[WIDTH_BLOCKS - 1];
-    let mut width = WidthRule {
-        sin_gamma: [[0.0; LANES]; WIDTH_BLOCKS],
-        cos_gamma: [[0.0; LANES]; WIDTH_BLOCKS],
-        weights: [[0.0; LANES]; WIDTH_BLOCKS],
-    };
-    for block in 0..WIDTH_BLOCKS {
-        for lane in 0..LANES {
-            let u = 0.5 * (1.0 + rule.nodes[block][lane]);
-            let (cos_gamma, sin_gamma) = (u * u * std::f64::consts::FRAC_PI_2).sin_cos();
-            width.sin_gamma[block][lane] = sin_gamma;
-            width.cos_gamma[block][lane] = cos_gamma;
-            // dh = cosγ dγ and dγ = π u du; u runs over half the range of the rule.
-            width.weights[block][lane] = cos_gamma * std::f64::consts::PI * u * 0.5 * rule.weights[block][lane];
-        }
+    let rule = &RULES[WIDTH_NODES / LANES - 1];
+    let mut width =
+        WidthRule { sin_gamma: [0.0; WIDTH_NODES], cos_gamma: [0.0; WIDTH_NODES], weights: [0.0; WIDTH_NODES] };
+    for node in 0..WIDTH_NODES {
+        let u = 0.5 * (1.0 + rule.nodes[node]);
+        let (cos_gamma, sin_gamma) = (u * u * std::f64::consts::FRAC_PI_2).sin_cos();
+        width.sin_gamma[node] = sin_gamma;
+        width.cos_gamma[node] = cos_gamma;
+        // dh = cosγ dγ and dγ = π u du; u runs over half the range of the rule.
+        width.weights[node] = cos_gamma * std::f64::consts::PI * u * 0.5 * rule.weights[node];
     }
     width
 });
@@ -107,7 +105,7 @@ const CONVERGENCE_AT_END: f64 = 34.0;
 
 /// For each rule, the half-length of the longest panel on which it converges.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct PanelLengths([f64; MOST_BLOCKS]);
+pub(super) struct PanelLengths([f64; RULE_COUNT]);
 
 impl PanelLengths {
     /// A singularity at height y beside the middle gives ρ = e^τ with sinh τ = y/a; one at height y above the end gives
@@ -122,15 +120,14 @@ impl PanelLengths {
         }))
     }
 
-    /// Equal parts into which a panel of this length is cut, and the rule for each part.
-    pub(super) fn plan(&self, length: f64) -> (usize, &'static Rule) {
+    /// Equal parts into which a panel of this length is cut, and the number of the [rule](Rule::numbered) for each part.
+    pub(super) fn plan(&self, length: f64) -> (usize, usize) {
         let half = 0.5 * length;
-        let longest = self.0[MOST_BLOCKS - 1];
+        let longest = self.0[RULE_COUNT - 1];
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive whole number")]
         let parts = (half / longest).ceil().max(1.0) as usize;
         let half = half / parts as f64;
-        let rule = self.0.iter().position(|&reach| half <= reach).unwrap_or(MOST_BLOCKS - 1);
-        (parts, &RULES[rule])
+        (parts, self.0.iter().position(|&reach| half <= reach).unwrap_or(RULE_COUNT - 1))
     }
 }
 
@@ -142,8 +139,7 @@ mod tests {
     #[test]
     fn rules_integrate_polynomials_exactly() {
         for rule in RULES.iter() {
-            let nodes = rule.nodes.as_flattened();
-            let weights = rule.weights.as_flattened();
+            let Rule { nodes, weights } = rule;
             let count = nodes.len();
             for degree in [0, 2, count, 2 * count - 2] {
                 let power = i32::try_from(degree).unwrap();
