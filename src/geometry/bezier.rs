@@ -163,8 +163,9 @@ pub(super) struct Jet {
 /// The parameter in 0 to 1 of the point nearest to a target, by Newton's method on (C − target)·C′ = 0.
 pub(super) fn refine_nearest(curve: impl Fn(f64) -> Jet, target: Point, guess: f64) -> f64 {
     let mut t = guess;
-    // From a guess on a polyline of the curve the error squares with every step: four are past double precision.
-    for _ in 0..4 {
+    // From a guess on a polyline of the curve the error squares with every step, and three are past double precision; near the
+    // centre of curvature it only shrinks by a factor.
+    for _ in 0..20 {
         let Jet { point, derivative, second } = curve(t);
         let off = point - target;
         // Beyond the centre of curvature Newton's step would run away from the nearest point; Gauss and Newton's does not.
@@ -241,7 +242,7 @@ mod tests {
     #[test]
     fn the_nearest_point_is_square_to_the_curve() {
         let curve = Bezier::from(cubic());
-        for (target, guess) in [((1.0, 0.2), 0.2), ((2.5, 0.9), 0.5), ((4.0, 0.5), 0.9)] {
+        for (target, guess) in [((0.9, 0.8), 0.2), ((2.5, 0.9), 0.5), ((4.0, 0.5), 0.9)] {
             let target = Point::from(target);
             let t = curve.nearest(target, guess);
             let jet = curve.jet(t);
