@@ -27,7 +27,6 @@ struct FilmModel {
     truths: [(&'static str, &'static str); 2],
 }
 
-/// Channels rise in wavelength, so that `_r` is the first, at 445 nm.
 const MODELS: [FilmModel; 3] = [
     FilmModel {
         name: "granier-heidrich",
@@ -37,12 +36,12 @@ const MODELS: [FilmModel; 3] = [
         truths: [
             (
                 "thin",
-                "thickness_nm = 220\neta = 1.56\nspecular = 0.3\ndiffuse_r = 0.06\ndiffuse_g = 0.04\ndiffuse_b = 0.02\n\
+                "thickness_nm = 220\neta = 1.56\nspecular = 0.3\ndiffuse_r = 0.02\ndiffuse_g = 0.04\ndiffuse_b = 0.06\n\
                  outer_exponent = 30\ninner_exponent = 20",
             ),
             (
                 "thick",
-                "thickness_nm = 480\neta = 1.56\nspecular = 0.2\ndiffuse_r = 0.02\ndiffuse_g = 0.03\ndiffuse_b = 0.06\n\
+                "thickness_nm = 480\neta = 1.56\nspecular = 0.2\ndiffuse_r = 0.06\ndiffuse_g = 0.03\ndiffuse_b = 0.02\n\
                  outer_exponent = 60\ninner_exponent = 60",
             ),
         ],
@@ -55,12 +54,12 @@ const MODELS: [FilmModel; 3] = [
         truths: [
             (
                 "thin",
-                "thickness_nm = 220\neta = 1.56\nspecular = 1\ndiffuse_r = 0.3\ndiffuse_g = 0.2\ndiffuse_b = 0.1\n\
+                "thickness_nm = 220\neta = 1.56\nspecular = 1\ndiffuse_r = 0.1\ndiffuse_g = 0.2\ndiffuse_b = 0.3\n\
                  roughness = 0.25",
             ),
             (
                 "thick",
-                "thickness_nm = 480\neta = 1.56\nspecular = 1\ndiffuse_r = 0.1\ndiffuse_g = 0.2\ndiffuse_b = 0.4\n\
+                "thickness_nm = 480\neta = 1.56\nspecular = 1\ndiffuse_r = 0.4\ndiffuse_g = 0.2\ndiffuse_b = 0.1\n\
                  roughness = 0.4",
             ),
         ],

@@ -11,7 +11,7 @@
 //! not say which molecules absorb.
 
 use super::ModelError;
-use super::channel_parameters::Declarations;
+use super::channel_parameters::{Declarations, place_in_rgb};
 use super::coated_base::check_name;
 use super::cylinder::absorption_for_albedo;
 use crate::parameter::{Parameter, Spread};
@@ -184,13 +184,12 @@ fn shape(
     }
 }
 
-/// A shape known in red, green and blue, by falling wavelength.
+/// A shape known in red, green and blue.
 fn in_rgb(name: &str, wavelengths_nm: &[f64], rgb: [f64; 3]) -> Result<Shape, ModelError> {
     if wavelengths_nm.len() != 3 {
         return Err(ModelError::PigmentNeedsRgb { name: name.to_owned(), channels: wavelengths_nm.len() });
     }
-    let longer = |channel: f64| wavelengths_nm.iter().filter(|other| **other > channel).count();
-    Ok(Shape::Still(wavelengths_nm.iter().map(|&channel| rgb[longer(channel)]).collect()))
+    Ok(Shape::Still((0..3).map(|channel| rgb[place_in_rgb(wavelengths_nm, channel)]).collect()))
 }
 
 /// Bands with parameters that shift and widen them.

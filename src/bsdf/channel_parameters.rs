@@ -22,8 +22,16 @@ impl ChannelParameter {
     }
 }
 
-/// What ends the names of parameters in three channels.
+/// What ends the names of parameters in three channels, the longest wavelength first.
 const RGB: [&str; 3] = ["r", "g", "b"];
+
+/// The place of one of three channels in red, green, blue: the longest wavelength is red, whatever the order of the list. Equal
+/// ones keep their order.
+pub(super) fn place_in_rgb(wavelengths_nm: &[f64], channel: usize) -> usize {
+    let own = wavelengths_nm[channel];
+    let before = |(other, &nm): (usize, &f64)| nm > own || (nm == own && other < channel);
+    wavelengths_nm.iter().enumerate().filter(|&other| before(other)).count()
+}
 
 /// The end of a declared name that says its channel, `_r` or `_2`, if it is `name` in one channel.
 pub(crate) fn channel_suffix<'a>(declared: &'a str, name: &str) -> Option<&'a str> {
@@ -65,8 +73,8 @@ impl<'a> Declarations<'a> {
         self.parameters.len() - 1
     }
 
-    /// Adds a parameter that may differ between channels: `eta`, or `eta_r`, `eta_g` and `eta_b` of three channels, or
-    /// `eta_1`, `eta_2` and so on of any other number, in the order of the wavelengths.
+    /// Adds a parameter that may differ between channels: `eta`, or `eta_r`, `eta_g` and `eta_b` of three channels, the
+    /// longest wavelength being r, or `eta_1`, `eta_2` and so on of any other number. They stand in the order of the channels.
     pub(super) fn spectral(&mut self, parameter: Parameter) -> ChannelParameter {
         let first = self.parameters.len();
         let each = self.per_channel.contains(&parameter.name);
@@ -77,7 +85,7 @@ impl<'a> Declarations<'a> {
         }
         for (channel, wavelength_nm) in self.wavelengths_nm.iter().enumerate() {
             let suffix = match self.wavelengths_nm.len() {
-                3 => RGB[channel].to_owned(),
+                3 => RGB[place_in_rgb(self.wavelengths_nm, channel)].to_owned(),
                 _ => (channel + 1).to_string(),
             };
             self.parameters.push(Parameter {

@@ -95,7 +95,8 @@ fn cell(
             }
             free.extend(per_channel.iter().flat_map(|(name, low, high)| {
                 // Names live as long as the study.
-                ["r", "g", "b"].map(|channel| (&*format!("{name}_{channel}").leak(), *low, *high))
+                // In the order of rising wavelengths.
+                ["b", "g", "r"].map(|channel| (&*format!("{name}_{channel}").leak(), *low, *high))
             }));
         }
     }

@@ -113,8 +113,8 @@ fn a_channel_of_its_own_goes_before_all_channels() {
 fn slips_in_channels_and_held_out_readings_get_a_sentence() {
     for (piece, slip, parts) in [
         ("diffuse = {", "difuse = {", ["parameters.\"difuse\"", "no such parameter", "did you mean `diffuse_"]),
-        ("upper = 0.99", "upper = 1.99", ["parameters.\"diffuse_r\"", "found 1.99", "from 0 to 1"]),
-        ("0.5 * diffuse", "0.5 * difuse", ["parameters.\"specular_r\"", "difuse", ""]),
+        ("upper = 0.99", "upper = 1.99", ["parameters.\"diffuse_b\"", "found 1.99", "from 0 to 1"]),
+        ("0.5 * diffuse", "0.5 * difuse", ["parameters.\"specular_b\"", "difuse", ""]),
         ("[data.layout.spectra]", "hold_out_every = 1\n[data.layout.spectra]", ["hold_out_every", "found 1", "2"]),
         ("[data.layout.spectra]", "compare = \"roots\"\n[data.layout.spectra]", ["compare", "roots", "cube-roots"]),
     ] {

@@ -95,6 +95,29 @@ fn ggx_masking_fills_the_projected_area() {
     }
 }
 
+/// Of three channels the longest wavelength is r and the shortest b, whatever their order. Names once went by position, so
+/// that the red of a table, whose wavelengths rise, was its shortest wavelength.
+#[test]
+fn channels_are_named_by_wavelength() {
+    let design = LambertianDesign { per_channel: vec!["albedo".to_owned()] };
+    let z = Direction::new(0.0, 0.0, 1.0);
+    let albedos = [("albedo_r", 0.9), ("albedo_g", 0.5), ("albedo_b", 0.2)];
+    for (wavelengths_nm, expected) in [
+        ([645.0, 525.0, 445.0], [0.9, 0.5, 0.2]),
+        ([445.0, 525.0, 645.0], [0.2, 0.5, 0.9]),
+        ([525.0, 645.0, 445.0], [0.5, 0.9, 0.2]),
+        ([525.0, 445.0, 645.0], [0.5, 0.2, 0.9]),
+    ] {
+        let model = Lambertian::new(&design, &wavelengths_nm).unwrap();
+        let found = evaluate(&model, &values(&model, &albedos), &z, &z);
+        for (found, albedo) in found.iter().zip(expected) {
+            assert!((found * PI - albedo).abs() <= 1e-15, "{wavelengths_nm:?}: {found} for an albedo of {albedo}");
+        }
+        let others = Lambertian::new(&design, &wavelengths_nm[..2]).unwrap();
+        assert_eq!(others.parameters().iter().map(|p| &*p.name).collect::<Vec<_>>(), ["albedo_1", "albedo_2"]);
+    }
+}
+
 proptest! {
     /// `f_r(i, o) = f_r(o, i)`; `f_t(i → o)/η_o² = f_t(o → i)/η_i²`.
     #[test]

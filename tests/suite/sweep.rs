@@ -213,9 +213,9 @@ wavelengths_nm = [445, 525, 645]
 kind = "lambertian"
 per_channel = ["albedo"]
 [parameters]
-albedo_r = 0.2
+albedo_r = 0.9
 albedo_g = 0.5
-albedo_b = 0.9
+albedo_b = 0.2
 [sweep.grid]
 gain = { values = [1.0, 0.5] }
 "#;
