@@ -83,7 +83,7 @@ const DIFFUSE_TRANSMITTANCE_OFFSET: usize = Side::Denser.reflectance_offset() + 
 
 /// Transmittance of a rough dielectric interface, interpolated in a shipped table of 240 kB.
 ///
-/// Within 1e-3 of the direct quadrature everywhere (worst of 10⁵ random points: 5e-4 for T, 5e-4 for the means). Outside
+/// Within 1e-3 of the direct quadrature everywhere (worst of 10⁵ random points: 5e-4 for T, 4e-4 for the means). Outside
 /// [`RoughTransmittance::INDICES`] and [`RoughTransmittance::ROUGHNESSES`] the answer is NaN.
 #[derive(Debug)]
 pub struct RoughTransmittance;
@@ -366,7 +366,7 @@ mod tests {
 
     /// The means over diffuse light at 10⁵ random points of the whole domain, evenly in the index and in the roughness's
     /// logarithm. Ten nodes a panel instead of 32 make the quadrature affordable; what that costs is found at every
-    /// thousandth point, and is a hundredth of the bar.
+    /// thousandth point, and counted as an error of the table.
     #[test]
     #[ignore = "long: run by .ci/long"]
     fn diffuse_fractions_are_right_everywhere() {
@@ -399,6 +399,6 @@ mod tests {
         let worst = |which: usize| errors.iter().map(|error| error[which]).fold(0.0, f64::max);
         let [reflectance, transmittance, quadrature] = [0, 1, 2].map(worst);
         println!("worst of {POINTS}: R_int {reflectance:.2e}, T_int {transmittance:.2e}, quadrature {quadrature:.2e}");
-        assert!(reflectance <= 1e-3 && transmittance <= 1e-3 && quadrature <= 1e-5);
+        assert!(reflectance.max(transmittance) + quadrature <= 1e-3);
     }
 }
