@@ -114,11 +114,16 @@ pub trait Bsdf: Send + Sync {
     /// # Panics
     /// If the lengths do not fit each other: that is the caller's slip, not a user's.
     fn evaluate_many(&self, incoming: &[Direction], outgoing: &[Direction], values: &mut [f64]) {
-        assert_eq!(incoming.len(), outgoing.len(), "directions come in pairs");
-        let channels = (values.len() / incoming.len().max(1)).max(1);
-        assert_eq!(values.len(), incoming.len() * channels, "one value a pair and channel");
-        for ((incoming, outgoing), values) in incoming.iter().zip(outgoing).zip(values.chunks_exact_mut(channels)) {
-            self.evaluate(incoming, outgoing, values);
-        }
+        one_at_a_time(self, incoming, outgoing, values);
+    }
+}
+
+/// [`Bsdf::evaluate_many`] by [`Bsdf::evaluate`].
+fn one_at_a_time<B: Bsdf + ?Sized>(bsdf: &B, incoming: &[Direction], outgoing: &[Direction], values: &mut [f64]) {
+    assert_eq!(incoming.len(), outgoing.len(), "directions come in pairs");
+    let channels = (values.len() / incoming.len().max(1)).max(1);
+    assert_eq!(values.len(), incoming.len() * channels, "one value a pair and channel");
+    for ((incoming, outgoing), values) in incoming.iter().zip(outgoing).zip(values.chunks_exact_mut(channels)) {
+        bsdf.evaluate(incoming, outgoing, values);
     }
 }

@@ -11,7 +11,7 @@ use super::azimuthal::Density;
 use super::far_field::{LaterPath, Node, Refraction};
 use super::pairs::{Lanes, PAIRS, PairAngles};
 use super::panels::{PanelPlan, panels};
-use super::quadrature::{PanelLengths, RULE_COUNT, Rule, WIDTH_NODES, WIDTH_RULE, WidthRule};
+use super::quadrature::{LANES, PanelLengths, RULE_COUNT, Rule, WIDTH_NODES, WIDTH_RULE, WidthRule};
 use super::surface::{BareSurface, Surface};
 use super::{Cylinder, Lobe};
 use crate::bsdf::Direction;
@@ -21,6 +21,11 @@ use crate::optics::elementary::quick_exp_of_negative;
 const BLOCKS: usize = 4;
 
 const NOTHING: Lanes = [0.0; PAIRS];
+
+/// So many lanes, the last register filled up: a block that is not full costs what it holds.
+fn whole_registers(count: usize) -> usize {
+    count.next_multiple_of(LANES)
+}
 
 /// [`crate::bsdf::Bsdf::evaluate_many`] of a cylinder.
 pub(super) fn evaluate(cylinder: &Cylinder, incoming: &[Direction], outgoing: &[Direction], values: &mut [f64]) {
@@ -186,7 +191,7 @@ impl<D: Density, S: Surface> Fibre<'_, D, S> {
         }
 
         for (optics, values) in optics.iter().zip(values.chunks_mut(PAIRS * self.channels)) {
-            self.later_paths(optics);
+            self.later_paths(optics, whole_registers(values.len() / self.channels));
             for (pair, values) in values.chunks_exact_mut(self.channels).enumerate() {
                 for (value, sum) in values[self.first_channel..].iter_mut().zip(&self.sums) {
                     *value += sum[pair];
@@ -214,7 +219,7 @@ impl<D: Density, S: Surface> Fibre<'_, D, S> {
                         lobe[lane] = if active { lobe[lane] } else { 0.0 };
                     }
                 }
-                self.panels(&lanes, &middle, &half_length, Rule::numbered(rule));
+                self.panels(&lanes, &middle, &half_length, whole_registers(panels.len()), Rule::numbered(rule));
                 for (lane, (pair, _)) in panels.iter().enumerate() {
                     let values = &mut values[pair * self.channels + self.first_channel..];
                     for (value, sum) in values.iter_mut().zip(&self.sums) {
@@ -225,15 +230,16 @@ impl<D: Density, S: Surface> Fibre<'_, D, S> {
         }
     }
 
-    /// Sets the sums to M N of all later paths.
+    /// Sets the first `lanes` sums to M N of all later paths.
     #[inline(always)]
-    fn later_paths(&mut self, optics: &PairOptics) {
+    fn later_paths(&mut self, optics: &PairOptics, lanes: usize) {
+        let lanes = lanes.min(PAIRS);
         self.sums.fill(NOTHING);
         let rule: &WidthRule = &WIDTH_RULE;
         for node in 0..WIDTH_NODES {
             let (mut entered, mut back, mut not_back, mut path) = (NOTHING, NOTHING, NOTHING, NOTHING);
             let (sin_gamma, cos_gamma, weight) = (rule.sin_gamma[node], rule.cos_gamma[node], rule.weights[node]);
-            for pair in 0..PAIRS {
+            for pair in 0..lanes {
                 let refraction = optics.refraction(self.eta, pair);
                 let later = LaterPath::new(&refraction, &self.surface, sin_gamma, cos_gamma, weight);
                 entered[pair] = later.entered;
@@ -242,7 +248,7 @@ impl<D: Density, S: Surface> Fibre<'_, D, S> {
                 path[pair] = later.path;
             }
             for (sum, &sigma_a) in self.sums.iter_mut().zip(self.sigma_a) {
-                for pair in 0..PAIRS {
+                for pair in 0..lanes {
                     let later = LaterPath {
                         entered: entered[pair],
                         back: back[pair],
@@ -255,21 +261,22 @@ impl<D: Density, S: Surface> Fibre<'_, D, S> {
         }
         let twice = &optics.longitudinal[2];
         for sum in &mut self.sums {
-            for pair in 0..PAIRS {
+            for pair in 0..lanes {
                 sum[pair] *= 0.5 * FRAC_1_PI * twice[pair];
             }
         }
     }
 
-    /// Sets the sums to what R, TT and TRT add in these panels.
+    /// Sets the first `lanes` sums to what R, TT and TRT add in these panels.
     #[inline(always)]
-    fn panels(&mut self, optics: &PairOptics, middle: &Lanes, half_length: &Lanes, rule: &Rule) {
+    fn panels(&mut self, optics: &PairOptics, middle: &Lanes, half_length: &Lanes, lanes: usize, rule: &Rule) {
+        let lanes = lanes.min(PAIRS);
         self.sums.fill(NOTHING);
         let [m_reflected, m_once, m_twice] = &optics.longitudinal;
         let mut reflected = NOTHING;
         for (position, weight) in rule.nodes.iter().zip(&rule.weights) {
             let (mut once, mut twice, mut path) = (NOTHING, NOTHING, NOTHING);
-            for lane in 0..PAIRS {
+            for lane in 0..lanes {
                 let refraction = optics.refraction(self.eta, lane);
                 let gamma = middle[lane] + half_length[lane] * position;
                 let node = Node::new(&refraction, &self.surface, gamma, half_length[lane] * weight);
@@ -281,14 +288,14 @@ impl<D: Density, S: Surface> Fibre<'_, D, S> {
                 path[lane] = node.path;
             }
             for (sum, &sigma_a) in self.sums.iter_mut().zip(self.sigma_a) {
-                for lane in 0..PAIRS {
+                for lane in 0..lanes {
                     let pass = quick_exp_of_negative(-sigma_a * path[lane]);
                     sum[lane] += pass * (once[lane] + pass * twice[lane]);
                 }
             }
         }
         for sum in &mut self.sums {
-            for lane in 0..PAIRS {
+            for lane in 0..lanes {
                 sum[lane] += m_reflected[lane] * reflected[lane];
             }
         }

@@ -38,7 +38,7 @@ mod sampling;
 mod surface;
 mod tabulated;
 
-use super::{Bsdf, Direction, Sample};
+use super::{Bsdf, Direction, Sample, one_at_a_time};
 use crate::pigment::{InversionError, solve_decreasing};
 
 pub use attenuation::Attenuation;
@@ -52,6 +52,7 @@ pub use tabulated::TabulatedCylinder;
 use azimuthal::{NarrowLogistic, TrimmedLogistic, WrappedGaussian};
 use far_field::{FarField, Refraction};
 use longitudinal::Longitudinal;
+use pairs::FEWEST;
 use quadrature::{Analyticity, PanelLengths};
 pub(super) use sampling::{AzimuthalSource, FibreSampler, LazySampler};
 use surface::{BareSurface, Surface};
@@ -407,6 +408,9 @@ impl Bsdf for Cylinder {
 
     /// Differs from [`Bsdf::evaluate`] by less than 1e-8 of the value.
     fn evaluate_many(&self, incoming: &[Direction], outgoing: &[Direction], values: &mut [f64]) {
+        if incoming.len() < FEWEST {
+            return one_at_a_time(self, incoming, outgoing, values);
+        }
         batch::evaluate(self, incoming, outgoing, values);
     }
 

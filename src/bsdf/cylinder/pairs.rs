@@ -11,6 +11,9 @@ use crate::optics::elementary::acute_angle;
 /// Pairs that are worked on together.
 pub(super) const PAIRS: usize = 64;
 
+/// With fewer pairs than this a block is not worth its trouble.
+pub(super) const FEWEST: usize = 24;
+
 /// One number for each pair.
 pub(super) type Lanes = [f64; PAIRS];
 

@@ -13,9 +13,9 @@
 use rayon::prelude::*;
 
 use super::longitudinal::Longitudinal;
-use super::pairs::{PAIRS, PairAngles};
+use super::pairs::{FEWEST, PAIRS, PairAngles};
 use super::{AzimuthalSource, Cylinder, FibreAngles, FibreSampler, LazySampler, only, over_cosine};
-use crate::bsdf::{Bsdf, Direction, Sample};
+use crate::bsdf::{Bsdf, Direction, Sample, one_at_a_time};
 
 /// Channels in an entry.
 const ENTRY_CHANNELS: usize = 5;
@@ -322,6 +322,9 @@ impl Bsdf for TabulatedCylinder {
     fn evaluate_many(&self, incoming: &[Direction], outgoing: &[Direction], values: &mut [f64]) {
         assert_eq!(incoming.len(), outgoing.len(), "directions come in pairs");
         assert_eq!(values.len(), incoming.len() * self.channel_count, "one value a pair and channel");
+        if incoming.len() < FEWEST {
+            return one_at_a_time(self, incoming, outgoing, values);
+        }
         pulp::Arch::new().dispatch(TabulatedPairs { table: self, incoming, outgoing, values });
     }
 }
