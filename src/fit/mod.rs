@@ -16,7 +16,6 @@ mod mapping;
 mod minima;
 mod objective;
 mod outcome;
-mod profile;
 mod random_effects;
 mod residuals;
 mod search;

@@ -2,14 +2,12 @@
 
 use super::assignment::{Assignment, Role};
 use super::curvature::{Curvature, Inverse, directions};
-use super::differences::Pattern;
 use super::minima::{Found, Likelihood, ln_weight, normalised};
 use super::objective::Objective;
 use super::outcome::{
     Bound, Estimate, Fit, Goodness, Minimum, OpenDirection, ProfilePoint, Settings, SigmaSource, TracePoint,
 };
-use super::profile::Surroundings;
-use super::search::{Survey, all_bounds};
+use super::search::Survey;
 use super::statistics::{central_95, effective_readings, one_sided_95};
 use super::warnings::warnings;
 use crate::parameter::Spread;
@@ -20,7 +18,6 @@ type Matrix = Vec<Vec<Option<f64>>>;
 /// Turns a finished survey into the result.
 pub(super) fn summarise(
     objective: &Objective<'_>,
-    pattern: &Pattern,
     assignments: &[Assignment],
     settings: &Settings,
     survey: Survey,
@@ -36,21 +33,7 @@ pub(super) fn summarise(
     let (covariance, correlations) = errors[0].as_ref().map_or_else(|| no_covariance(names.len()), Errors::matrices);
     let open_directions =
         best.curvature.as_ref().map_or_else(Vec::new, |c| open_directions(objective, best, c, &names));
-    let quantile = quantile(&goodness);
-    let surroundings = |sigma: f64| Surroundings {
-        objective,
-        pattern,
-        bounds: all_bounds(objective),
-        best,
-        covariance: &covariance,
-        quantile,
-        sigma: sigma * goodness.error_widening,
-        max_iterations: settings.max_iterations,
-    };
-    let intervals =
-        sigma(objective, best.cost).map_or_else(|| vec![None; names.len()], |sigma| surroundings(sigma).intervals());
-    let of_best = Best { found: best, minimum: &minima[0], intervals: &intervals, quantile };
-    let estimates = estimates(objective, assignments, &of_best, &goodness, &open_directions);
+    let estimates = estimates(objective, assignments, best, &minima[0], &goodness, &open_directions);
     let profiles = profiles
         .into_iter()
         .map(|(position, points)| {
@@ -258,8 +241,14 @@ fn ln_flat_prior(objective: &Objective<'_>, free: &[f64]) -> f64 {
         .sum()
 }
 
-/// Half the width of a central 95 % interval in standard errors.
-fn quantile(goodness: &Goodness) -> f64 {
+fn estimates(
+    objective: &Objective<'_>,
+    assignments: &[Assignment],
+    best: &Found,
+    minimum: &Minimum,
+    goodness: &Goodness,
+    open: &[OpenDirection],
+) -> Vec<Estimate> {
     #[expect(clippy::cast_precision_loss, reason = "degrees of freedom are far below 2^53")]
     let freedom = (goodness.sigma_source == SigmaSource::Estimated).then(|| {
         // Readings that err together leave fewer degrees of freedom.
@@ -267,25 +256,7 @@ fn quantile(goodness: &Goodness) -> f64 {
             if goodness.error_widening > 1.0 { goodness.readings as f64 - goodness.effective_readings } else { 0.0 };
         (goodness.degrees_of_freedom as f64 - lost).max(1.0)
     });
-    central_95(freedom)
-}
-
-/// What is known of the best minimum.
-struct Best<'a> {
-    found: &'a Found,
-    minimum: &'a Minimum,
-    /// Of each free parameter on no bound.
-    intervals: &'a [Option<[f64; 2]>],
-    quantile: f64,
-}
-
-fn estimates(
-    objective: &Objective<'_>,
-    assignments: &[Assignment],
-    &Best { found: best, minimum, intervals, quantile }: &Best<'_>,
-    goodness: &Goodness,
-    open: &[OpenDirection],
-) -> Vec<Estimate> {
+    let quantile = central_95(freedom);
     let parameters = objective.residuals.parameters();
     let estimate = |index: usize| {
         let (parameter, assignment) = (&parameters[index], &assignments[index]);
@@ -300,8 +271,6 @@ fn estimates(
         };
         let interval_95 = match (at_bound, position) {
             (Some(side), Some(j)) => one_sided(objective, best, j, side, range, goodness.error_widening),
-            (None, Some(j)) => intervals[j],
-            // A tied one, whose error follows from those of several.
             _ => standard_error
                 .map(|error| [(value - quantile * error).max(range[0]), (value + quantile * error).min(range[1])]),
         };

@@ -381,15 +381,6 @@ fn twenty_tables_of_two_models() {
     run(&cheap.collect::<Vec<_>>(), 20);
 }
 
-/// The cell whose likelihood is bent most, whole. Six directions nearly let a coat's index, the weight of its gloss and the
-/// albedo below stand for each other; ± 1.96 standard errors held the truths of 338 of 378 roughnesses, 296 of 339 indices
-/// and 290 of 331 albedos.
-#[test]
-fn bent_valleys_are_held_as_often_as_straight_ones() {
-    let bent = numbered(Channels::ThirtyOne).filter(|(_, cell)| cell.kind == "rough-plastic");
-    run(&bent.collect::<Vec<_>>(), 400);
-}
-
 /// Exact two-sided probabilities: 20 of 20 is no surprise (0.95²⁰ = 0.358, and 19 is likelier still), 15 of 20 is one
 /// (P(X ≤ 15) = 0.0026 from tables of the binomial distribution), and the most likely number gives 1.
 #[test]

@@ -18,7 +18,6 @@ mod four_angles;
 mod geometry;
 mod geometry_command;
 mod granier;
-mod intervals;
 mod jacobian;
 mod jobs;
 mod lobes;
