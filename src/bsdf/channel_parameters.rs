@@ -29,7 +29,7 @@ const RGB: [&str; 3] = ["r", "g", "b"];
 /// ones keep their order.
 pub(super) fn place_in_rgb(wavelengths_nm: &[f64], channel: usize) -> usize {
     let own = wavelengths_nm[channel];
-    let before = |(other, &nm): (usize, &f64)| nm > own || (nm == own && other < channel);
+    let before = |(other, nm): (usize, &f64)| nm.total_cmp(&own).then(channel.cmp(&other)).is_gt();
     wavelengths_nm.iter().enumerate().filter(|&other| before(other)).count()
 }
 
