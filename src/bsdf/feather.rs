@@ -215,14 +215,29 @@ impl Model for Feather {
     }
 
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
+        self.bind_parts(values, |model, values| model.bind(values))
+    }
+
+    fn bind_for_picture(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
+        self.bind_parts(values, |model, values| model.bind_for_picture(values))
+    }
+}
+
+impl Feather {
+    /// The feather with its parts bound as `bind` does it.
+    fn bind_parts<'a>(
+        &'a self,
+        values: &[f64],
+        bind: impl Fn(&'a dyn Model, &[f64]) -> Box<dyn Bsdf + 'a>,
+    ) -> Box<dyn Bsdf + 'a> {
         let (own, parts) = values.split_at(if self.barbules_are_fibres { 3 } else { 2 });
         let (barb, barbule) = parts.split_at(self.barb.parameters().len());
         let (barb_share, through_share) = (own[0], own[1]);
         let barbule_share = 0.5 * (1.0 - barb_share - through_share);
         Box::new(BoundFeather {
             shares: Shares { barb: barb_share, proximal: barbule_share, distal: barbule_share, through: through_share },
-            barb: self.barb.bind(barb),
-            barbule: self.barbule.bind(barbule),
+            barb: bind(self.barb.as_ref(), barb),
+            barbule: bind(self.barbule.as_ref(), barbule),
             // Absent where the barbules' model knows no direction.
             directions: own
                 .get(2)

@@ -49,6 +49,10 @@ use crate::parameter::Parameter;
 /// A unit vector that points away from the surface, in the local frame: z is the normal, x the tangent.
 pub type Direction = Vector3<f64>;
 
+/// How much values may differ that are meant for a picture, as a share of themselves: a twentieth of the step between two
+/// shades of an 8-bit screen.
+pub const PICTURE_TOLERANCE: f64 = 1e-4;
+
 /// A scattering model for a fixed list of channels, with its parameters not yet given.
 pub trait Model: Send + Sync + std::fmt::Debug {
     /// The parameters, in the order in which [`Model::bind`] takes their values.
@@ -61,6 +65,12 @@ pub trait Model: Send + Sync + std::fmt::Debug {
     ///
     /// Values inside the declared bounds always give finite results.
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_>;
+
+    /// [`Model::bind`] for a picture: millions of pairs of directions, three channels, values to [`PICTURE_TOLERANCE`]. A model
+    /// may then tabulate what it would else compute anew.
+    fn bind_for_picture(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
+        self.bind(values)
+    }
 
     /// Whether these values can be bound: one for each parameter, each a number inside its bounds.
     ///

@@ -54,6 +54,12 @@ impl Model for Oriented {
         let (values, tangent_deg) = values.split_at(self.parameters.len() - 1);
         Box::new(BoundOriented { bsdf: self.model.bind(values), tangent: Tangent::at_degrees(tangent_deg[0]) })
     }
+
+    fn bind_for_picture(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
+        let (values, tangent_deg) = values.split_at(self.parameters.len() - 1);
+        let tangent = Tangent::at_degrees(tangent_deg[0]);
+        Box::new(BoundOriented { bsdf: self.model.bind_for_picture(values), tangent })
+    }
 }
 
 /// An oriented model with its parameters given.

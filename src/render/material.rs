@@ -42,7 +42,7 @@ impl Material {
     }
 
     pub(super) fn bind(&self) -> BoundMaterial<'_> {
-        let bsdf = self.model.bind(&self.values);
+        let bsdf = self.model.bind_for_picture(&self.values);
         // Where light passes for any direction it passes for the normal or for a slanting one.
         let directions = [Direction::z(), -Direction::z(), Direction::new(0.6, 0.0, 0.8)];
         let passes = directions.iter().any(|direction| bsdf.straight_through(direction) > 0.0);

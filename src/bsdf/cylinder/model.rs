@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{AzimuthalLobe, Cylinder, CylinderParameters, LongitudinalMapping};
 use crate::bsdf::absorbers::{Absorbers, AmountScale};
 use crate::bsdf::channel_parameters::{ChannelParameter, Declarations};
-use crate::bsdf::{Bsdf, Model, ModelError};
+use crate::bsdf::{Bsdf, Model, ModelError, PICTURE_TOLERANCE};
 use crate::parameter::{Parameter, Spread};
 use crate::pigment::PigmentDesign;
 
@@ -157,5 +157,9 @@ impl Model for CylinderModel {
 
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
         Box::new(self.cylinder(values))
+    }
+
+    fn bind_for_picture(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
+        Box::new(self.cylinder(values).tabulate(PICTURE_TOLERANCE))
     }
 }
