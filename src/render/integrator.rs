@@ -15,7 +15,7 @@ use super::light::Light;
 use super::material::{BoundMaterial, CHANNELS};
 use super::ray::{Colour, Frame, Hit, Ray, Vector};
 use super::sampler::{PixelSampler, Sampler};
-use super::scene::{Scene, Surface};
+use super::scene::{Meaning, Scene};
 use crate::bsdf::Direction;
 
 /// Scatterings before a path may end by chance.
@@ -218,25 +218,31 @@ impl<'a> Integrator<'a> {
         workspace.alive.clear();
         workspace.alive.resize(workspace.paths.len(), false);
         for (number, path) in workspace.paths.iter_mut().enumerate() {
-            path.events += 1;
-            let hit = self.scene.first_hit(&path.ray, path.nearest);
-            let Some(hit) = hit else {
-                if let Some((light, choice)) = self.environment {
-                    self.add_light_met(light, choice, path, f64::INFINITY, &mut sums[path.pixel]);
+            while path.events < MOST_EVENTS {
+                path.events += 1;
+                let Some(mut hit) = self.scene.first_hit(&path.ray, path.nearest) else {
+                    if let Some((light, choice)) = self.environment {
+                        self.add_light_met(light, choice, path, f64::INFINITY, &mut sums[path.pixel]);
+                    }
+                    break;
+                };
+                match self.scene.meaning(&mut hit) {
+                    Meaning::Light(light) => {
+                        let (choice, light) = (self.choice[light].0, &self.scene.lights[light]);
+                        self.add_light_met(light, choice, path, hit.distance, &mut sums[path.pixel]);
+                        break;
+                    }
+                    Meaning::Material { material, coverage } if is_covered(path, coverage) => {
+                        // A path that has scattered often enough may still go straight on.
+                        if !self.is_spent(path) || self.materials[material].passes {
+                            let vertex = self.vertex(number, path, &hit, material);
+                            workspace.vertices[material].push(vertex);
+                        }
+                        break;
+                    }
+                    // Through an open part, which is neither a bounce nor a shadow.
+                    Meaning::Material { .. } | Meaning::Nothing => path.nearest = hit.distance + self.start,
                 }
-                continue;
-            };
-            match self.scene.surfaces[hit.surface] {
-                Surface::Light(light) => {
-                    let choice = self.choice[light].0;
-                    self.add_light_met(&self.scene.lights[light], choice, path, hit.distance, &mut sums[path.pixel]);
-                }
-                // A path that has scattered often enough may still go straight on.
-                Surface::Material(material) if !self.is_spent(path) || self.materials[material].passes => {
-                    let vertex = self.vertex(number, path, &hit, material);
-                    workspace.vertices[material].push(vertex);
-                }
-                Surface::Material(_) => {}
             }
         }
     }
@@ -389,6 +395,13 @@ impl<'a> Integrator<'a> {
             alive[vertex.path] = true;
         }
     }
+}
+
+/// Whether a path meets what covers this share of a point.
+#[inline]
+fn is_covered(path: &Path, coverage: f64) -> bool {
+    // The lane of this group that choosing a light leaves.
+    coverage >= 1.0 || path.sampler.four(1 + 2 * (path.events - 1))[3] < coverage
 }
 
 /// Whether a direction lies on the same side of the interpolated surface as of the true one: else light would leak

@@ -21,6 +21,7 @@ mod ray;
 mod sampler;
 mod scene;
 mod shape;
+mod sheet;
 mod texture;
 mod tiles;
 
@@ -36,6 +37,7 @@ pub use ray::{Colour, Frame, Hit, Ray, Vector};
 pub use sampler::Sampler;
 pub use scene::Scene;
 pub use shape::{Rectangle, Sphere};
+pub use sheet::{Pattern, Sheet, Vanes};
 pub use texture::Texture;
 pub use tiles::{Checkpoint, Control, Resolution, render};
 

@@ -6,12 +6,15 @@ use super::material::{BoundMaterial, Material};
 use super::mesh::{Mesh, MeshPoint};
 use super::ray::{Frame, Hit, Ray, Vector};
 use super::shape::{Rectangle, Sphere};
+use super::sheet::Sheet;
 
 /// What lies on a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Surface {
     /// A material, by its number.
     Material(usize),
+    /// A flat feather, by its number.
+    Sheet(usize),
     /// A light, by its number. It takes in all that falls on it.
     Light(usize),
 }
@@ -24,6 +27,7 @@ pub struct Scene {
     spheres: Vec<(Sphere, usize)>,
     rectangles: Vec<(Rectangle, usize)>,
     meshes: Vec<(Mesh, usize)>,
+    sheets: Vec<Sheet>,
     pub(super) surfaces: Vec<Surface>,
     pub(super) lights: Vec<Light>,
 }
@@ -45,6 +49,7 @@ impl Scene {
             spheres: Vec::new(),
             rectangles: Vec::new(),
             meshes: Vec::new(),
+            sheets: Vec::new(),
             surfaces: Vec::new(),
             lights: Vec::new(),
         }
@@ -76,6 +81,15 @@ impl Scene {
     pub fn with_mesh(mut self, mesh: Mesh, material: usize) -> Self {
         let surface = self.add_surface(Surface::Material(material));
         self.meshes.push((mesh, surface));
+        self
+    }
+
+    /// Adds a flat feather.
+    #[must_use]
+    pub fn with_sheet(mut self, sheet: Sheet) -> Self {
+        let surface = self.add_surface(Surface::Sheet(self.sheets.len()));
+        self.rectangles.push((sheet.rectangle, surface));
+        self.sheets.push(sheet);
         self
     }
 
@@ -203,6 +217,22 @@ impl Scene {
         share
     }
 
+    /// What the ray met first: a light, a material with its tangent, or an open part of a sheet.
+    #[inline]
+    pub(super) fn meaning(&self, hit: &mut Hit) -> Meaning {
+        match self.surfaces[hit.surface] {
+            Surface::Light(light) => Meaning::Light(light),
+            Surface::Material(material) => Meaning::Material { material, coverage: 1.0 },
+            Surface::Sheet(sheet) => match self.sheets[sheet].at(hit) {
+                Some(point) => {
+                    hit.tangent = point.tangent;
+                    Meaning::Material { material: point.material, coverage: point.coverage }
+                }
+                None => Meaning::Nothing,
+            },
+        }
+    }
+
     #[inline]
     fn share_through(
         &self,
@@ -212,12 +242,30 @@ impl Scene {
         hit: impl FnOnce() -> Hit,
     ) -> f64 {
         match self.surfaces[surface] {
-            Surface::Material(material) if materials[material].passes => {
-                let hit = hit();
+            Surface::Light(_) => return 0.0,
+            Surface::Material(material) if !materials[material].passes => return 0.0,
+            Surface::Material(_) | Surface::Sheet(_) => {}
+        }
+        let mut hit = hit();
+        match self.meaning(&mut hit) {
+            Meaning::Light(_) => 0.0,
+            Meaning::Nothing => 1.0,
+            Meaning::Material { material, coverage } => {
                 let frame = Frame::new(hit.normal, hit.tangent);
-                materials[material].bsdf.straight_through(&frame.to_local(&ray.direction))
+                let open = materials[material].bsdf.straight_through(&frame.to_local(&ray.direction));
+                1.0 - coverage * (1.0 - open)
             }
-            Surface::Material(_) | Surface::Light(_) => 0.0,
         }
     }
+}
+
+/// What lies at the point where a ray met a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Meaning {
+    /// A light, by its number.
+    Light(usize),
+    /// A material, by its number, that covers this share of the point; the rest is open.
+    Material { material: usize, coverage: f64 },
+    /// Nothing.
+    Nothing,
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::error::{SceneError, SceneProblem};
+use super::feather::sheet;
 use super::file::{CameraFile, ImageFile, LightFile, ObjectFile, SceneFile};
 use super::inputs::Inputs;
 use super::material::material;
@@ -153,7 +154,7 @@ fn with_object(
     materials: &BTreeMap<&str, usize>,
     inputs: &mut Inputs,
 ) -> Result<Scene, SceneProblem> {
-    let material = |name: &str| {
+    let named = |key: &str, name: &str| {
         materials.get(name).copied().ok_or_else(|| {
             let known = if materials.is_empty() {
                 "the scene has none".to_owned()
@@ -161,9 +162,10 @@ fn with_object(
                 format!("the scene has {}", materials.keys().copied().collect::<Vec<_>>().join(", "))
             };
             let meant = suggestion(name, materials.keys().copied());
-            SceneProblem::key(format!("{key}.material"), format!("there is no material {name:?}; {known}{meant}"))
+            SceneProblem::key(key, format!("there is no material {name:?}; {known}{meant}"))
         })
     };
+    let material = |name: &str| named(&format!("{key}.material"), name);
     let eye = scene.camera_position();
     match object {
         ObjectFile::Sphere(design) => {
@@ -184,6 +186,7 @@ fn with_object(
             }
             Ok(scene.with_mesh(mesh, material))
         }
+        ObjectFile::Feather(design) => Ok(scene.with_sheet(sheet(key, design, &named, inputs)?)),
     }
 }
 
@@ -251,7 +254,7 @@ fn camera_inside(key: &str) -> SceneProblem {
     SceneProblem::key(key, "the camera is inside it and would see nothing else; move `camera.position_mm` out of it")
 }
 
-fn rectangle(key: &str, corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle, SceneProblem> {
+pub(super) fn rectangle(key: &str, corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Rectangle, SceneProblem> {
     let corner = vector(&format!("{key}.corner_mm"), corner)?;
     let (u, v) = (vector(&format!("{key}.edge_u_mm"), u)?, vector(&format!("{key}.edge_v_mm"), v)?);
     let (long, wide) = (u.norm(), v.norm());
@@ -268,7 +271,7 @@ fn rectangle(key: &str, corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Result<Re
 /// Coordinates beyond this are no desk's; squares of them are still numbers.
 const FARTHEST_MM: f64 = 1e12;
 
-fn vector(key: &str, typed: [f64; 3]) -> Result<Vector, SceneProblem> {
+pub(super) fn vector(key: &str, typed: [f64; 3]) -> Result<Vector, SceneProblem> {
     match typed.iter().find(|x| !(-FARTHEST_MM..=FARTHEST_MM).contains(*x)) {
         Some(found) => {
             Err(SceneProblem::key(key, format!("found {}; expected three numbers up to ±{FARTHEST_MM}", plain(*found))))
@@ -277,7 +280,7 @@ fn vector(key: &str, typed: [f64; 3]) -> Result<Vector, SceneProblem> {
     }
 }
 
-fn length(key: &str, typed: f64) -> Result<f64, SceneProblem> {
+pub(super) fn length(key: &str, typed: f64) -> Result<f64, SceneProblem> {
     let allowed = 1e-9..=FARTHEST_MM;
     if allowed.contains(&typed) {
         return Ok(typed);

@@ -163,6 +163,8 @@ pub enum ObjectFile {
     Rectangle(RectangleFile),
     /// A mesh of triangles.
     Mesh(MeshFile),
+    /// A flat feather.
+    Feather(FeatherSheetFile),
 }
 
 /// A sphere. Its tangents run along its circles of latitude about z.
@@ -206,6 +208,40 @@ pub struct MeshFile {
     pub position_mm: [f64; 3],
     /// Name of its material.
     pub material: String,
+}
+
+/// A flat feather in the plane of `right` and `up`; `right` × `up` is its upper side.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FeatherSheetFile {
+    /// A feather's JSON or a map that `barbule geometry` made, beside the scene.
+    pub file: PathBuf,
+    /// Resolution of the map of a feather's JSON; without this key its longer side has 2048 texels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixels_per_mm: Option<f64>,
+    /// Where the map's lower left corner lies.
+    pub corner_mm: [f64; 3],
+    /// The map's right in the scene, of any length.
+    pub right: [f64; 3],
+    /// The map's up in the scene, perpendicular to `right`, of any length.
+    pub up: [f64; 3],
+    /// Name of the material of shaft and calamus.
+    pub shaft: String,
+    /// Name of the material of the vanes, where no pattern says otherwise.
+    pub vane: String,
+    /// Where the vanes are made of something else.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pattern: Option<PatternFile>,
+}
+
+/// A picture over the whole map whose colours stand for materials.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PatternFile {
+    /// A PNG, beside the scene.
+    pub file: PathBuf,
+    /// Names of materials by the colour that stands for them, `#rrggbb`. A texel of another colour takes the nearest one.
+    pub materials: BTreeMap<String, String>,
 }
 
 fn default_unit_mm() -> f64 {

@@ -31,6 +31,12 @@ impl Inputs {
         self.digest.finalize().iter().take(16).map(|byte| format!("{byte:02x}")).collect()
     }
 
+    /// Notes a file's contents, and says where it is.
+    pub(super) fn noted(&mut self, key: &str, file: &Path) -> Result<PathBuf, SceneProblem> {
+        self.read(key, file)?;
+        Ok(self.folder.join(file))
+    }
+
     fn read(&mut self, key: &str, file: &Path) -> Result<Vec<u8>, SceneProblem> {
         let path = self.folder.join(file);
         let bytes = fs::read(&path).map_err(|error| {
@@ -51,6 +57,21 @@ impl Inputs {
         file: &Path,
         encoding: Option<Encoding>,
     ) -> Result<Texture, SceneProblem> {
+        let picture = self.decoded(key, file)?;
+        let is_float = matches!(picture.color(), ColorType::Rgb32F | ColorType::Rgba32F);
+        let encoding = encoding.unwrap_or(if is_float { Encoding::Linear } else { Encoding::Srgb });
+        let empty = || SceneProblem::key(key, format!("{} has no pixels", file.display()));
+        linear(&picture, encoding).ok_or_else(empty)
+    }
+
+    /// A picture's width and the codes of its texels, as they are.
+    pub(super) fn codes(&mut self, key: &str, file: &Path) -> Result<(usize, Vec<[u8; 3]>), SceneProblem> {
+        let picture = self.decoded(key, file)?.to_rgb8();
+        let width = usize::try_from(picture.width()).unwrap_or(0);
+        Ok((width, picture.pixels().map(|pixel| pixel.0).collect()))
+    }
+
+    fn decoded(&mut self, key: &str, file: &Path) -> Result<DynamicImage, SceneProblem> {
         let bytes = self.read(key, file)?;
         let refused = |reason: String| {
             let expected = "expected a whole PNG, JPEG, TIFF or EXR picture";
@@ -58,10 +79,7 @@ impl Inputs {
         };
         let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
         let picture = reader.map_err(|error| refused(error.to_string()))?.decode();
-        let picture = picture.map_err(|error| refused(error.to_string()))?;
-        let is_float = matches!(picture.color(), ColorType::Rgb32F | ColorType::Rgba32F);
-        let encoding = encoding.unwrap_or(if is_float { Encoding::Linear } else { Encoding::Srgb });
-        linear(&picture, encoding).ok_or_else(|| refused("it has no pixels".to_owned()))
+        picture.map_err(|error| refused(error.to_string()))
     }
 
     /// A mesh, its triangles and their corners as they stand in an OBJ file.

@@ -5,6 +5,7 @@
 
 mod check;
 mod error;
+mod feather;
 mod file;
 mod inputs;
 mod material;
@@ -14,8 +15,8 @@ mod schema;
 pub use check::CheckedScene;
 pub use error::{SceneError, SceneProblem};
 pub use file::{
-    CameraFile, DirectionalLightFile, Encoding, EnvironmentFile, ImageFile, LightFile, MaterialFile, MeshFile,
-    ObjectFile, OrthographicFile, PerspectiveFile, PointLightFile, RectangleFile, RectangleLightFile, SceneFile,
-    SphereFile, SphereLightFile, TextureFile,
+    CameraFile, DirectionalLightFile, Encoding, EnvironmentFile, FeatherSheetFile, ImageFile, LightFile, MaterialFile,
+    MeshFile, ObjectFile, OrthographicFile, PatternFile, PerspectiveFile, PointLightFile, RectangleFile,
+    RectangleLightFile, SceneFile, SphereFile, SphereLightFile, TextureFile,
 };
 pub use schema::schemas;

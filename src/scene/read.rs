@@ -10,8 +10,8 @@ use serde_path_to_error::Segment;
 
 use super::error::{SceneError, SceneProblem};
 use super::file::{
-    DirectionalLightFile, EnvironmentFile, MeshFile, OrthographicFile, PerspectiveFile, PointLightFile, RectangleFile,
-    RectangleLightFile, SceneFile, SphereFile, SphereLightFile,
+    DirectionalLightFile, EnvironmentFile, FeatherSheetFile, MeshFile, OrthographicFile, PerspectiveFile,
+    PointLightFile, RectangleFile, RectangleLightFile, SceneFile, SphereFile, SphereLightFile,
 };
 use crate::job::model_slip;
 use crate::json_file::OBJECT;
@@ -91,6 +91,7 @@ fn within(scene: &Value, slip: &Slip) -> Option<Slip> {
         (["objects", _], "sphere") => deserialise::<SphereFile>(rest).err()?,
         (["objects", _], "rectangle") => deserialise::<RectangleFile>(rest).err()?,
         (["objects", _], "mesh") => deserialise::<MeshFile>(rest).err()?,
+        (["objects", _], "feather") => deserialise::<FeatherSheetFile>(rest).err()?,
         (["lights", _], "point") => deserialise::<PointLightFile>(rest).err()?,
         (["lights", _], "directional") => deserialise::<DirectionalLightFile>(rest).err()?,
         (["lights", _], "rectangle") => deserialise::<RectangleLightFile>(rest).err()?,

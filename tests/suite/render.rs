@@ -4,6 +4,7 @@
 //! spread is the standard error of their mean.
 
 mod estimators;
+mod feathers;
 mod files;
 mod sources;
 

@@ -302,3 +302,43 @@ fn shipped_scenes_are_sound() {
     }
     assert!(scenes > 0);
 }
+
+/// A scene with the tail feather lying on the table, with one of its keys changed.
+fn feather_with(changes: &[(&str, Value)]) -> Value {
+    let mut feather = json!({
+        "kind": "feather", "file": "tail.json", "pixels_per_mm": 2, "corner_mm": [-20, -40, 25],
+        "right": [1, 0, 0], "up": [0, 1, 0], "shaft": "table", "vane": "ball"
+    });
+    for (key, value) in changes {
+        feather[key] = value.clone();
+    }
+    scene_with("/objects/2", feather)
+}
+
+#[test]
+fn a_feather_is_laid_as_its_files_say() {
+    let tail = fs::read_to_string(format!("{}/feather.json", shipped("feather-tail"))).unwrap();
+    let desk = |changes: &[(&str, Value)]| {
+        let desk = desk_with(&feather_with(changes)).and("tail.json", &tail);
+        fs::write(desk.path("spot.png"), spot()).unwrap();
+        desk
+    };
+    let pattern = |materials: Value| ("pattern", json!({ "file": "spot.png", "materials": materials }));
+    for (changes, parts) in [
+        (&[("file", json!("no.json"))][..], &["objects[3].file: no.json: there is no such file"][..]),
+        (&[("file", json!("spot.png")), ("pixels_per_mm", Value::Null)], &["objects[3].file", "spot.png"]),
+        (&[("file", json!("spot.png"))], &["objects[3].file: a map has its resolution"]),
+        (&[("pixels_per_mm", json!(-1))], &["objects[3].pixels_per_mm: found -1"]),
+        (&[("pixels_per_mm", json!(1e6))], &["objects[3].file", "texels"]),
+        (&[("up", json!([1, 1, 0]))], &["objects[3]: the edges", "not perpendicular"]),
+        (&[("right", json!([0, 0, 0]))], &["objects[3].right: found [0, 0, 0]"]),
+        (&[("vane", json!("bal"))], &["objects[3].vane: there is no material \"bal\"", "mean `ball`"]),
+        (&[("vain", json!("ball"))], &["objects[3].vain: there is no key `vain`", "vane"]),
+        (&[pattern(json!({}))], &["objects[3].pattern.materials: there is none"]),
+        (&[pattern(json!({ "red": "ball" }))], &["objects[3].pattern.materials.\"red\": this is no colour"]),
+        (&[pattern(json!({ "#ff0000": "no" }))], &["pattern.materials.\"#ff0000\": there is no material \"no\""]),
+    ] {
+        desk(changes).barbule("render scene.json").complains(parts);
+    }
+    desk(&[pattern(json!({ "#ff0000": "ball", "#0000ff": "table" }))]).barbule("render scene.json").succeeds();
+}
