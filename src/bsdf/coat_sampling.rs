@@ -43,7 +43,8 @@ impl CoatSampler {
         Self { coat, above, gloss }
     }
 
-    fn gloss_probability(&self, cos_theta_o: f64) -> f64 {
+    #[inline(always)]
+    pub(super) fn gloss_probability(&self, cos_theta_o: f64) -> f64 {
         let position = cos_theta_o.clamp(0.0, 1.0) * INTERVALS as f64;
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and INTERVALS")]
         let before = (position as usize).min(INTERVALS - 1);

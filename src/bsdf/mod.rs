@@ -117,6 +117,18 @@ pub trait Bsdf: Send + Sync {
     /// draws and that of straight-through ones sum to 1. Above 0 wherever [`Bsdf::evaluate`] is. Allocates nothing.
     fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64;
 
+    /// [`Bsdf::density`] for many pairs of directions at a time; like [`Bsdf::evaluate_many`] it may be less exact than one
+    /// at a time, as the model says.
+    ///
+    /// # Panics
+    /// If the lengths do not fit each other: that is the caller's slip, not a user's.
+    fn density_many(&self, incoming: &[Direction], outgoing: &[Direction], densities: &mut [f64]) {
+        assert!(incoming.len() == outgoing.len() && incoming.len() == densities.len(), "one density a pair");
+        for ((incoming, outgoing), density) in incoming.iter().zip(outgoing).zip(densities) {
+            *density = self.density(incoming, outgoing);
+        }
+    }
+
     /// [`Bsdf::evaluate`] for many pairs of directions at a time: all channels of the first pair, then of the second.
     ///
     /// For renderers and sweeps; a model that is faster over many pairs says how much its values may then differ.

@@ -56,11 +56,12 @@ impl Render {
         let (mut file, path) = SceneFile::read(&self.scene)?;
         file.image.samples = self.samples.unwrap_or(file.image.samples);
         file.image.seed = self.seed.unwrap_or(file.image.seed);
-        let checked = CheckedScene::new(&file, &path)?;
+        // A feather's map is made by all threads, so that they come first.
         if let Some(threads) = self.threads {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
             pool.context("the threads cannot be started; choose a smaller --threads")?;
         }
+        let checked = CheckedScene::new(&file, &path)?;
         let folder = self.out.unwrap_or_else(|| PathBuf::from("reports").join(name(&path)));
         check_writable(&folder)?;
         ctrlc::set_handler(interrupt).context("Ctrl-C cannot be caught")?;

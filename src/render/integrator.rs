@@ -70,6 +70,25 @@ struct Path {
     /// Place in the tile's sums.
     pixel: usize,
     sampler: PixelSampler,
+    /// Numbers of the first event that the camera's group has left.
+    spare: [f64; 2],
+}
+
+impl Path {
+    /// The numbers of the event that it has come to: one group of four dimensions and a part of a second. At the first
+    /// event that part is what the camera has left, since no path ends there by chance.
+    #[inline]
+    fn numbers(&self) -> EventNumbers {
+        let [u, v, a, b] = self.sampler.four(2 * self.events - 1);
+        let [c, choose, chance] = match self.events {
+            1 => [self.spare[0], self.spare[1], 0.0],
+            _ => {
+                let [c, choose, chance, _] = self.sampler.four(2 * self.events);
+                [c, choose, chance]
+            }
+        };
+        EventNumbers { choose, light: [u, v], surface: [a, b, c], chance }
+    }
 }
 
 /// A point where a path has met a material.
@@ -82,6 +101,19 @@ struct Vertex {
     geometric_normal: Vector,
     outgoing: Direction,
     texel: Colour,
+    numbers: EventNumbers,
+}
+
+/// The random numbers of one event on a path.
+#[derive(Debug, Clone, Copy)]
+struct EventNumbers {
+    /// Which light, and where on it.
+    choose: f64,
+    light: [f64; 2],
+    /// For the surface's own draw.
+    surface: [f64; 3],
+    /// Whether the path goes on.
+    chance: f64,
 }
 
 /// A direction that is to be evaluated at a vertex.
@@ -118,6 +150,7 @@ pub(super) struct Workspace {
     incoming: Vec<Direction>,
     outgoing: Vec<Direction>,
     values: Vec<f64>,
+    densities: Vec<f64>,
     alive: Vec<bool>,
 }
 
@@ -193,7 +226,7 @@ impl<'a> Integrator<'a> {
                 let (x, y) = (tile.x + column, tile.y + row);
                 let pixel = u64::from(y) * u64::from(width) + u64::from(x);
                 let sampler = PixelSampler::new(self.settings.sampler, self.settings.seed, pixel, index);
-                let [right, down, ..] = sampler.four(0);
+                let [right, down, spare @ ..] = sampler.four(0);
                 let place_x = (f64::from(x) + right - 0.5 * f64::from(width)) / f64::from(height);
                 let place_y = 0.5 - (f64::from(y) + down) / f64::from(height);
                 paths.push(Path {
@@ -205,6 +238,7 @@ impl<'a> Integrator<'a> {
                     events: 0,
                     pixel: (row * tile.width + column) as usize,
                     sampler,
+                    spare,
                 });
             }
         }
@@ -263,6 +297,7 @@ impl<'a> Integrator<'a> {
             geometric_normal: hit.geometric_normal,
             outgoing: frame.to_local(&-path.ray.direction),
             texel: self.materials[material].texel(hit.uv),
+            numbers: path.numbers(),
         }
     }
 
@@ -290,7 +325,7 @@ impl<'a> Integrator<'a> {
         if last_choice == 0.0 {
             return;
         }
-        let Workspace { paths, tasks, incoming, outgoing, values, .. } = workspace;
+        let Workspace { paths, tasks, incoming, outgoing, values, densities, .. } = workspace;
         tasks.clear();
         incoming.clear();
         outgoing.clear();
@@ -299,10 +334,10 @@ impl<'a> Integrator<'a> {
             if self.is_spent(path) {
                 continue;
             }
-            let [choose, u, v, _] = path.sampler.four(1 + 2 * (path.events - 1));
+            let EventNumbers { choose, light: place, .. } = vertex.numbers;
             let light = self.choice.iter().position(|(_, sum)| choose * last_choice < *sum).unwrap_or(0);
             let choice = self.choice[light].0;
-            let Some(sample) = self.scene.lights[light].sample(&vertex.point, [u, v]) else { continue };
+            let Some(sample) = self.scene.lights[light].sample(&vertex.point, place) else { continue };
             let local = vertex.frame.to_local(&sample.direction);
             if !same_side(vertex, &sample.direction, &local) {
                 continue;
@@ -322,14 +357,17 @@ impl<'a> Integrator<'a> {
 
         let bound = &self.materials[material];
         evaluate(bound, incoming, outgoing, values);
+        densities.clear();
+        densities.resize(tasks.len(), 0.0);
+        if self.settings.strategies == Strategies::Both {
+            bound.bsdf.density_many(incoming, outgoing, densities);
+        }
         for (number, task) in tasks.iter().enumerate() {
             let vertex = &vertices[task.vertex];
             let path = &paths[vertex.path];
             let function = bound.mix(&values[number * bound.channels..][..bound.channels], &vertex.texel);
             let share = match (task.density, self.settings.strategies) {
-                (Some(density), Strategies::Both) => {
-                    density / (density + bound.bsdf.density(&incoming[number], &outgoing[number]))
-                }
+                (Some(density), Strategies::Both) => density / (density + densities[number]),
                 _ => 1.0,
             };
             let arriving = std::array::from_fn(|k| function[k] * task.weight[k]);
@@ -350,8 +388,7 @@ impl<'a> Integrator<'a> {
             if path.events == MOST_EVENTS || (is_last && !self.has_size && !bound.passes) {
                 continue;
             }
-            let [a, b, c, _] = path.sampler.four(2 + 2 * (path.events - 1));
-            let Some(sample) = bound.bsdf.sample(&vertex.outgoing, [a, b, c]) else { continue };
+            let Some(sample) = bound.bsdf.sample(&vertex.outgoing, vertex.numbers.surface) else { continue };
             if sample.straight_through {
                 path.nearest = vertex.distance + self.start;
                 alive[vertex.path] = true;
@@ -383,8 +420,7 @@ impl<'a> Integrator<'a> {
             }
             if path.scatterings > SURE_SCATTERINGS {
                 let survival = largest.min(0.95);
-                let [.., chance] = path.sampler.four(2 + 2 * (path.events - 1));
-                if chance >= survival {
+                if vertex.numbers.chance >= survival {
                     continue;
                 }
                 path.throughput = path.throughput.map(|channel| channel / survival);
@@ -400,8 +436,7 @@ impl<'a> Integrator<'a> {
 /// Whether a path meets what covers this share of a point.
 #[inline]
 fn is_covered(path: &Path, coverage: f64) -> bool {
-    // The lane of this group that choosing a light leaves.
-    coverage >= 1.0 || path.sampler.four(1 + 2 * (path.events - 1))[3] < coverage
+    coverage >= 1.0 || path.sampler.four(2 * path.events)[3] < coverage
 }
 
 /// Whether a direction lies on the same side of the interpolated surface as of the true one: else light would leak

@@ -29,7 +29,8 @@ impl Texture {
     /// The texel in this column and row.
     #[inline]
     pub fn texel(&self, x: usize, y: usize) -> Colour {
-        self.texels[y * self.width + x].map(f64::from)
+        let [r, g, b] = self.texels[y * self.width + x];
+        [r.into(), g.into(), b.into()]
     }
 
     /// All texels.
@@ -58,10 +59,9 @@ impl Texture {
 
     #[inline]
     fn mix(&self, [x0, x1]: [usize; 2], right: f64, [y0, y1]: [usize; 2], down: f64) -> Colour {
-        let [a, b, c, d] = [(x0, y0), (x1, y0), (x0, y1), (x1, y1)].map(|(x, y)| self.texels[y * self.width + x]);
+        let (a, b, c, d) = (self.texel(x0, y0), self.texel(x1, y0), self.texel(x0, y1), self.texel(x1, y1));
         std::array::from_fn(|k| {
-            let [a, b, c, d] = [a[k], b[k], c[k], d[k]].map(f64::from);
-            let (upper, lower) = (a + (b - a) * right, c + (d - c) * right);
+            let (upper, lower) = (a[k] + (b[k] - a[k]) * right, c[k] + (d[k] - c[k]) * right);
             upper + (lower - upper) * down
         })
     }

@@ -201,11 +201,18 @@ proptest! {
             .map(|(i, o, _)| (Direction::new(-i.x, -i.y, i.z) + o * roughness).normalize())
             .collect();
         let mut found = vec![f64::NAN; 3 * pairs.len()];
-        model.bind(&values).evaluate_many(&incoming, &outgoing, &mut found);
+        let bound = model.bind(&values);
+        bound.evaluate_many(&incoming, &outgoing, &mut found);
         for ((i, o), found) in incoming.iter().zip(&outgoing).zip(found.chunks_exact(3)) {
             for (found, expected) in found.iter().zip(evaluate(&model, &values, i, o)) {
                 prop_assert!((found - expected).abs() <= 1e-5 * expected, "{i:?} {o:?}: {found} instead of {expected}");
             }
+        }
+        let mut densities = vec![f64::NAN; pairs.len()];
+        bound.density_many(&incoming, &outgoing, &mut densities);
+        for ((i, o), found) in incoming.iter().zip(&outgoing).zip(densities) {
+            let expected = bound.density(i, o);
+            prop_assert!((found - expected).abs() <= 1e-5 * expected, "{i:?} {o:?}: density {found}, not {expected}");
         }
     }
 }

@@ -13,12 +13,12 @@ use crate::optics::elementary::{ROUND, exp_of_negative};
 use crate::optics::microfacet::Beckmann;
 
 /// Pairs that are worked on together.
-const BLOCK: usize = 64;
+pub(super) const BLOCK: usize = 64;
 
 /// Cells of the table. They are counted in √μ, so that at the smallest roughness, 0.005, the bend at the horizon is ten
 /// cells wide.
 const CELLS: usize = 256;
-const CELL_COUNT: f64 = CELLS as f64;
+pub(super) const CELL_COUNT: f64 = CELLS as f64;
 
 /// T(μ) and μ/G1(μ) as cubics over √μ, with less than 1e-5 of error beyond that of the curve they are made from.
 #[derive(Debug, Clone)]
@@ -50,7 +50,7 @@ impl DirectionTable {
 
     /// T and μ/G1 at the place `x` = [`CELLS`] √μ.
     #[inline(always)]
-    fn at(&self, x: f64) -> [f64; 2] {
+    pub(super) fn at(&self, x: f64) -> [f64; 2] {
         // The number of the cell stands in the lowest bits of the shifted place; a plain cast would saturate, for which
         // there is no vector instruction.
         let shifted = x.min(LAST_PLACE) - 0.5 + ROUND;

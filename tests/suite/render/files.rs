@@ -340,5 +340,7 @@ fn a_feather_is_laid_as_its_files_say() {
     ] {
         desk(changes).barbule("render scene.json").complains(parts);
     }
-    desk(&[pattern(json!({ "#ff0000": "ball", "#0000ff": "table" }))]).barbule("render scene.json").succeeds();
+    desk(&[pattern(json!({ "#ff0000": "ball", "#0000ff": "table" }))])
+        .barbule("render scene.json --threads 2")
+        .succeeds();
 }
