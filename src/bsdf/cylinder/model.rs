@@ -160,6 +160,9 @@ impl Model for CylinderModel {
     }
 
     fn bind_for_picture(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
-        Box::new(self.cylinder(values).tabulate(PICTURE_TOLERANCE))
+        let cylinder = self.cylinder(values);
+        let table = cylinder.tabulate(PICTURE_TOLERANCE);
+        // Where no table of that size is good enough the fibre is evaluated itself, at some ten times the cost.
+        if table.error() <= PICTURE_TOLERANCE { Box::new(table) } else { Box::new(cylinder) }
     }
 }
