@@ -63,7 +63,7 @@ pub fn fit(
         return Err(no_finite_start(&objective, survey.starts));
     }
     settle(&mut objective, &pattern, settings, &mut survey);
-    let mut found = summarise(&objective, assignments, settings, survey);
+    let mut found = summarise(&objective, &pattern, assignments, settings, survey);
     if let Some(record) = &record {
         record.end(control.interrupted());
         let warning = |error| format!("The fit is complete, but could not be picked up had it been killed: {error}");

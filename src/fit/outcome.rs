@@ -117,7 +117,9 @@ pub struct Estimate {
     pub prior: Option<[f64; 2]>,
     /// Standard error, where the data give one.
     pub standard_error: Option<f64>,
-    /// 95 % interval around the best minimum, cut at the bounds; one-sided when the value touches a bound.
+    /// 95 % interval around the best minimum, cut at the bounds; one-sided when the value touches a bound. It is the value ±
+    /// so many standard errors where the cost is a parabola that far, and otherwise reaches to where the lowest cost with
+    /// this parameter held has risen by as much, farther to one side than to the other.
     pub interval_95: Option<[f64; 2]>,
     /// The bound that the value touches.
     pub at_bound: Option<Bound>,

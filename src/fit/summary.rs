@@ -1,13 +1,16 @@
 //! The result as it is written: estimates, errors, correlations, weights, goodness, warnings.
 
 use super::assignment::{Assignment, Role};
-use super::curvature::{Curvature, Inverse, directions};
+use super::curvature::Inverse;
+use super::differences::Pattern;
 use super::minima::{Found, Likelihood, ln_weight, normalised};
 use super::objective::Objective;
+use super::open::open_directions;
 use super::outcome::{
     Bound, Estimate, Fit, Goodness, Minimum, OpenDirection, ProfilePoint, Settings, SigmaSource, TracePoint,
 };
-use super::search::Survey;
+use super::profile::Surroundings;
+use super::search::{Survey, all_bounds};
 use super::statistics::{central_95, effective_readings, one_sided_95};
 use super::warnings::warnings;
 use crate::parameter::Spread;
@@ -18,6 +21,7 @@ type Matrix = Vec<Vec<Option<f64>>>;
 /// Turns a finished survey into the result.
 pub(super) fn summarise(
     objective: &Objective<'_>,
+    pattern: &Pattern,
     assignments: &[Assignment],
     settings: &Settings,
     survey: Survey,
@@ -33,7 +37,22 @@ pub(super) fn summarise(
     let (covariance, correlations) = errors[0].as_ref().map_or_else(|| no_covariance(names.len()), Errors::matrices);
     let open_directions =
         best.curvature.as_ref().map_or_else(Vec::new, |c| open_directions(objective, best, c, &names));
-    let estimates = estimates(objective, assignments, best, &minima[0], &goodness, &open_directions);
+    let quantile = quantile(&goodness);
+    let surroundings = |sigma: f64| Surroundings {
+        objective,
+        pattern,
+        bounds: all_bounds(objective),
+        best,
+        covariance: &covariance,
+        quantile,
+        sigma: sigma * goodness.error_widening,
+        max_iterations: settings.max_iterations,
+    };
+    let intervals =
+        sigma(objective, best.cost).map_or_else(|| vec![None; names.len()], |sigma| surroundings(sigma).intervals());
+    let cut_short = objective.control.interrupted();
+    let of_best = Best { found: best, minimum: &minima[0], intervals: &intervals, quantile };
+    let estimates = estimates(objective, assignments, &of_best, &goodness, &open_directions);
     let profiles = profiles
         .into_iter()
         .map(|(position, points)| {
@@ -60,6 +79,10 @@ pub(super) fn summarise(
         warnings: Vec::new(),
     };
     fit.warnings = warnings(&fit);
+    if cut_short {
+        let words = "Interrupted before the 95 % intervals were known: they are those of a Gaussian.";
+        fit.warnings.push(words.to_owned());
+    }
     fit
 }
 
@@ -170,7 +193,7 @@ fn determined(inverse: &Inverse, k: usize) -> bool {
 }
 
 /// σ of the readings; None where it would have to come from residuals that are not there.
-fn sigma(objective: &Objective<'_>, cost: f64) -> Option<f64> {
+pub(super) fn sigma(objective: &Objective<'_>, cost: f64) -> Option<f64> {
     if objective.residuals.sigma_known() {
         return Some(1.0);
     }
@@ -183,7 +206,7 @@ fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-fn ranges(objective: &Objective<'_>) -> Vec<f64> {
+pub(super) fn ranges(objective: &Objective<'_>) -> Vec<f64> {
     objective.mapping.free.iter().map(|parameter| parameter.upper - parameter.lower).collect()
 }
 
@@ -241,14 +264,8 @@ fn ln_flat_prior(objective: &Objective<'_>, free: &[f64]) -> f64 {
         .sum()
 }
 
-fn estimates(
-    objective: &Objective<'_>,
-    assignments: &[Assignment],
-    best: &Found,
-    minimum: &Minimum,
-    goodness: &Goodness,
-    open: &[OpenDirection],
-) -> Vec<Estimate> {
+/// Half the width of a central 95 % interval in standard errors.
+fn quantile(goodness: &Goodness) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "degrees of freedom are far below 2^53")]
     let freedom = (goodness.sigma_source == SigmaSource::Estimated).then(|| {
         // Readings that err together leave fewer degrees of freedom.
@@ -256,7 +273,25 @@ fn estimates(
             if goodness.error_widening > 1.0 { goodness.readings as f64 - goodness.effective_readings } else { 0.0 };
         (goodness.degrees_of_freedom as f64 - lost).max(1.0)
     });
-    let quantile = central_95(freedom);
+    central_95(freedom)
+}
+
+/// What is known of the best minimum.
+struct Best<'a> {
+    found: &'a Found,
+    minimum: &'a Minimum,
+    /// Of each free parameter on no bound.
+    intervals: &'a [Option<[f64; 2]>],
+    quantile: f64,
+}
+
+fn estimates(
+    objective: &Objective<'_>,
+    assignments: &[Assignment],
+    &Best { found: best, minimum, intervals, quantile }: &Best<'_>,
+    goodness: &Goodness,
+    open: &[OpenDirection],
+) -> Vec<Estimate> {
     let parameters = objective.residuals.parameters();
     let estimate = |index: usize| {
         let (parameter, assignment) = (&parameters[index], &assignments[index]);
@@ -269,8 +304,16 @@ fn estimates(
             Role::Fixed(_) => ("fixed", None, [parameter.lower, parameter.upper]),
             Role::Tied { .. } => ("tied", None, [parameter.lower, parameter.upper]),
         };
+        let (constant, terms) = objective.mapping.linear_form(index);
         let interval_95 = match (at_bound, position) {
             (Some(side), Some(j)) => one_sided(objective, best, j, side, range, goodness.error_widening),
+            (None, Some(j)) => intervals[j],
+            (_, None) if terms.len() == 1 => intervals[terms[0].0].map(|[low, high]| {
+                let factor = terms[0].1;
+                let ends = [low, high].map(|end| (constant + factor * end).clamp(range[0], range[1]));
+                if factor < 0.0 { [ends[1], ends[0]] } else { ends }
+            }),
+            // Tied to several.
             _ => standard_error
                 .map(|error| [(value - quantile * error).max(range[0]), (value + quantile * error).min(range[1])]),
         };
@@ -318,72 +361,6 @@ fn one_sided(
         Bound::Upper => [(range[1] - reach).max(range[0]), range[1]],
     };
     interval.iter().all(|bound| bound.is_finite()).then_some(interval)
-}
-
-/// Combinations of relative changes that the readings do not tell apart.
-fn open_directions(
-    objective: &Objective<'_>,
-    best: &Found,
-    curvature: &Curvature,
-    names: &[String],
-) -> Vec<OpenDirection> {
-    let ranges = ranges(objective);
-    let size = |j: usize| {
-        let value = best.free[j].abs();
-        if value > 0.0 {
-            value
-        } else if ranges[j].is_finite() {
-            ranges[j]
-        } else {
-            1.0
-        }
-    };
-    let mut matrix = curvature.columns(&curvature.inner);
-    for (k, &j) in curvature.inner.iter().enumerate() {
-        matrix.column_mut(k).scale_mut(size(j));
-    }
-    let directions = directions(matrix);
-    let largest = directions.first().map_or(0.0, |direction| direction.0);
-    let sigma = sigma(objective, best.cost);
-    let mut open = Vec::new();
-    for (value, direction) in directions {
-        let no_rank = value <= 1e-9 * largest;
-        // Twice 1.96 standard errors along the direction against the width of the box.
-        let wider = sigma.is_some_and(|sigma| {
-            curvature
-                .inner
-                .iter()
-                .zip(&direction)
-                .any(|(&j, share)| share.abs() * size(j) * 3.92 * sigma / value >= ranges[j] && share.abs() > 0.1)
-        });
-        if no_rank || wider {
-            open.push(describe(&curvature.inner, &direction, names, value / largest.max(f64::MIN_POSITIVE)));
-        }
-    }
-    open
-}
-
-fn describe(inner: &[usize], direction: &[f64], names: &[String], relative: f64) -> OpenDirection {
-    let mut shares: Vec<(String, f64)> = inner
-        .iter()
-        .zip(direction)
-        .filter(|(_, share)| share.abs() > 0.1)
-        .map(|(&j, &share)| (names[j].clone(), share))
-        .collect();
-    // Shares that are equal but for rounding keep the order of the parameters.
-    shares.sort_by(|a, b| (1e6 * b.1.abs()).round().total_cmp(&(1e6 * a.1.abs()).round()));
-    if shares.first().is_some_and(|first| first.1 < 0.0) {
-        shares.iter_mut().for_each(|share| share.1 = -share.1);
-    }
-    let listed: Vec<String> = shares.iter().map(|(name, _)| format!("`{name}`")).collect();
-    let text = match listed.as_slice() {
-        [one] => format!("The readings do not determine {one}."),
-        [first @ .., last] => {
-            format!("The readings give {} and {last} only as a combination, not each by itself.", first.join(", "))
-        }
-        [] => String::new(),
-    };
-    OpenDirection { shares, relative_singular_value: relative, text }
 }
 
 /// Cost of the full problem along the way of the start that won, each point an improvement.

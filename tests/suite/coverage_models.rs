@@ -6,6 +6,13 @@
 //! the right minimum is found (the study of thickness asks that). In RGB the parameters that can have a value a channel
 //! have one; in 31 channels one value serves all.
 //!
+//! That fit must not end above the misfit of the truth itself, as a solver that stopped too early would.
+//!
+//! In one cell ± 1.96 standard errors are not enough: at the six directions of the 31 channels the index of a rough plastic,
+//! the weight of its gloss and the albedo below nearly stand for each other, and the valley between them is bent. Of 400
+//! tables such intervals held the truth of 338 of 378 roughnesses, 296 of 339 indices, 294 of 321 weights and 290 of 331
+//! albedos. Intervals of the profile, which the fit gives, must hold it as often as everywhere.
+//!
 //! A parameter that a table leaves open, or that ends on a bound, has no two-sided interval: it is listed, not counted.
 //! The others are counted over all tables, and the exact binomial probability of a count as far from 95 % or farther must
 //! exceed 0.001 over the number of counts, so that a right program fails once in a thousand studies.
@@ -258,7 +265,8 @@ starts = 1
             &std::collections::BTreeMap::new(),
             Noise { share: 0.0, seed: 0 },
         );
-        std::fs::write(self.folder.join(format!("{item}.csv")), noisy(&exact.unwrap(), &mut random)).unwrap();
+        let (table, misfit_of_truth) = noisy(&exact.unwrap(), &mut random);
+        std::fs::write(self.folder.join(format!("{item}.csv")), table).unwrap();
 
         let starts = free.iter().zip(&truths).map(|(&(name, low, high), truth)| {
             let start = (truth + 0.03 * (high - low) * random.random_range(-1.0..1.0)).clamp(low, high);
@@ -273,6 +281,9 @@ starts = 1
         let control = Control { interrupt: &AtomicBool::new(false), progress: &|_, _| (), checkpoint: None };
         let fit = cases[0].fit(&control).unwrap();
         let seconds = began.elapsed().as_secs_f64();
+        // The table has all digits of its readings, so that nothing but rounding is allowed for.
+        let (found, of_truth) = (fit.minima[0].cost, misfit_of_truth * (1.0 + 1e-9));
+        assert!(found <= of_truth, "{} {item}: ends at {found}, the truth has {of_truth}", self.cell.kind);
         let verdict = |((name, ..), truth): (&Range, &f64)| {
             judge(fit.estimates.iter().find(|estimate| estimate.name == *name).unwrap(), *truth)
         };
@@ -280,8 +291,8 @@ starts = 1
     }
 }
 
-/// The table with noise on its readings, and the σ of that noise beside each.
-fn noisy(exact: &str, random: &mut ChaCha8Rng) -> String {
+/// The table with noise on its readings, and the σ of that noise beside each; χ² of what it was made from.
+fn noisy(exact: &str, random: &mut ChaCha8Rng) -> (String, f64) {
     let rows: Vec<(&str, f64)> = exact
         .lines()
         .skip(1)
@@ -290,12 +301,14 @@ fn noisy(exact: &str, random: &mut ChaCha8Rng) -> String {
         .collect();
     let mean = rows.iter().map(|(_, value)| value).sum::<f64>() / f64::from(u32::try_from(rows.len()).unwrap());
     let mut text = "id,theta_i_deg,phi_i_deg,theta_o_deg,phi_o_deg,wavelength_nm,brdf_per_sr,sigma\n".to_owned();
+    let mut misfit = 0.0;
     for (cells, value) in rows {
         let sigma = (NOISE.0 * value).hypot(NOISE.1 * mean);
         let deviate: f64 = StandardNormal.sample(random);
         writeln!(text, "{cells},{},{sigma}", value + sigma * deviate).unwrap();
+        misfit += deviate * deviate;
     }
-    text
+    (text, misfit)
 }
 
 fn judge(estimate: &Estimate, truth: f64) -> Verdict {
@@ -379,6 +392,13 @@ fn four_hundred_tables_of_every_model() {
 fn twenty_tables_of_two_models() {
     let cheap = numbered(Channels::Rgb).filter(|(_, cell)| ["lambertian", "rough-plastic"].contains(&cell.kind));
     run(&cheap.collect::<Vec<_>>(), 20);
+}
+
+/// The cell whose valley is bent most, whole.
+#[test]
+fn bent_valleys_are_held_as_often_as_straight_ones() {
+    let bent = numbered(Channels::ThirtyOne).filter(|(_, cell)| cell.kind == "rough-plastic");
+    run(&bent.collect::<Vec<_>>(), 400);
 }
 
 /// Exact two-sided probabilities: 20 of 20 is no surprise (0.95²⁰ = 0.358, and 19 is likelier still), 15 of 20 is one

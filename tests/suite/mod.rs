@@ -18,6 +18,7 @@ mod four_angles;
 mod geometry;
 mod geometry_command;
 mod granier;
+mod intervals;
 mod jacobian;
 mod jobs;
 mod lobes;
