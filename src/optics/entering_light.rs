@@ -37,6 +37,12 @@ const PHASE_STEP: f64 = 0.5;
 /// The same for more layers than one, whose fringes have resonances.
 const PHASE_STEP_OF_STACK: f64 = 0.25;
 
+/// The same for dozens of layers, whose resonances are sharper still.
+const PHASE_STEP_OF_MANY: f64 = 0.08;
+
+/// More layers than this are dozens.
+const FEW_LAYERS: usize = 12;
+
 /// Slopes beyond this many α hold e⁻²⁰ = 2e-9 of the surface, which is enough for a table.
 const STEEPEST_SLOPE: f64 = 4.5;
 
@@ -187,7 +193,11 @@ impl EnteringLight {
 /// Numbers of intervals for microfacets and for light. They grow by powers of two, so that one kernel serves many
 /// thicknesses, and a fit's small steps hardly ever change them.
 fn intervals(alpha: f64, medium: &LayeredMedium<'_>, front: f64) -> (usize, usize) {
-    let step = if medium.layer_count() > 1 { PHASE_STEP_OF_STACK } else { PHASE_STEP };
+    let step = match medium.layer_count() {
+        0..=1 => PHASE_STEP,
+        2..=FEW_LAYERS => PHASE_STEP_OF_STACK,
+        _ => PHASE_STEP_OF_MANY,
+    };
     let needed = medium.fringe_rate(front) / step;
     let ladder = |least: usize, most: usize, needed: f64| {
         let mut count = least;
