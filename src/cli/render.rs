@@ -112,7 +112,7 @@ fn name(path: &Path) -> PathBuf {
 }
 
 /// A bar on a terminal, nothing otherwise.
-fn progress_bar() -> ProgressBar {
+pub(super) fn progress_bar() -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }

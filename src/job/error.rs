@@ -71,7 +71,7 @@ pub(super) fn at_line(line: Option<usize>) -> String {
 
 impl JobError {
     /// A key whose value makes no sense.
-    pub(super) fn key(key: impl Into<String>, problem: impl Into<String>) -> Self {
+    pub(crate) fn key(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self::Key { key: key.into(), problem: problem.into() }
     }
 }

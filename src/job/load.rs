@@ -102,7 +102,7 @@ impl Job {
     }
 
     /// The error with its file, line and case, as far as it does not name them itself.
-    pub(super) fn placed(&self, error: JobError, case: usize) -> JobError {
+    pub(crate) fn placed(&self, error: JobError, case: usize) -> JobError {
         let keys = match &error {
             JobError::Key { key, .. } => keys_of(key),
             JobError::Model(_) => vec!["model".to_owned()],

@@ -48,8 +48,8 @@ pub use run::run;
 pub use schema::schemas;
 pub use simulate::{Noise, simulate};
 pub use sweep::{
-    AxisFile, Cell, Colour, Excursion, Own, Rate, Slope, SobolFile, Spacing, Sweep, SweepAxis, SweepFile, Variance,
-    VarianceOf, Varying, View, sweep,
+    AxisFile, Cell, Colour, Companion, Excursion, Own, Rate, RenderFile, Slope, SobolFile, Spacing, Sweep, SweepAxis,
+    SweepFile, Variance, VarianceOf, Varying, View, sweep,
 };
 
 pub(crate) use syntax::model_slip;

@@ -60,6 +60,11 @@ impl Scene {
         self.camera.position()
     }
 
+    /// Puts another material in the place of number `material`.
+    pub fn replace_material(&mut self, material: usize, by: Material) {
+        self.materials[material] = by;
+    }
+
     /// Adds a sphere of a material.
     #[must_use]
     pub fn with_sphere(mut self, sphere: Sphere, material: usize) -> Self {

@@ -19,7 +19,7 @@ use super::palette::{Colour, WHITE};
 /// Units of the SVG's view box to a page pixel: a tenth of a pixel is finer than an eye sees.
 const SVG_UNITS: i32 = 10;
 /// Pixels of the PNG to a page pixel: 2 keeps it sharp on dense screens and at 180 dots an inch in print.
-const PNG_PIXELS: i32 = 2;
+pub(crate) const PNG_PIXELS: i32 = 2;
 /// Pixels painted, each way, for one of the PNG.
 const OVERSAMPLING: i32 = 2;
 
@@ -94,8 +94,37 @@ pub(crate) fn svg(drawing: &Drawing, label: &str) -> Result<String, PaintError> 
     Ok(text.replacen(&painted, &shown, 1).replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", ""))
 }
 
+/// A picture to stand in a drawing's PNG as it is, one of its pixels a pixel of the PNG, of which there are
+/// [`PNG_PIXELS`] to a page pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Pasted {
+    pub(crate) picture: RgbImage,
+    /// Its upper left corner, pixels of the PNG.
+    pub(crate) at: (u32, u32),
+}
+
 /// The drawing as PNG bytes.
 pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PaintError> {
+    let mut bytes = Vec::new();
+    // Flat areas compress better without a filter: a fifth less on line plots.
+    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::NoFilter);
+    bitmap(drawing)?.write_with_encoder(encoder).map_err(failed)?;
+    Ok(bytes)
+}
+
+/// The drawing with these pictures in it as PNG bytes.
+pub(crate) fn png_with(drawing: &Drawing, pictures: &[Pasted]) -> Result<Vec<u8>, PaintError> {
+    let mut painted = bitmap(drawing)?;
+    for Pasted { picture, at } in pictures {
+        image::imageops::replace(&mut painted, picture, at.0.into(), at.1.into());
+    }
+    let mut bytes = Vec::new();
+    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::Adaptive);
+    painted.write_with_encoder(encoder).map_err(failed)?;
+    Ok(bytes)
+}
+
+fn bitmap(drawing: &Drawing) -> Result<RgbImage, PaintError> {
     use_font()?;
     let scale = PNG_PIXELS * OVERSAMPLING;
     let (width, height) = (drawing.width * scale.unsigned_abs(), drawing.height * scale.unsigned_abs());
@@ -105,11 +134,7 @@ pub(crate) fn png(drawing: &Drawing) -> Result<Vec<u8>, PaintError> {
         paint(&area, drawing, scale, false)?;
         area.present().map_err(failed)?;
     }
-    let mut bytes = Vec::new();
-    // Flat areas compress better without a filter: a fifth less on line plots.
-    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::NoFilter);
-    averaged(&painted, OVERSAMPLING.unsigned_abs()).write_with_encoder(encoder).map_err(failed)?;
-    Ok(bytes)
+    Ok(averaged(&painted, OVERSAMPLING.unsigned_abs()))
 }
 
 /// plotters takes a font's size as its line height, 1.24 of the em that typographers name.

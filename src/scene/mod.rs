@@ -4,6 +4,7 @@
 //! makes no sense is a sentence with its key.
 
 mod check;
+mod contact_sheet;
 mod error;
 mod feather;
 mod file;
@@ -13,6 +14,7 @@ mod read;
 mod schema;
 
 pub use check::CheckedScene;
+pub use contact_sheet::{ContactSheet, ContactSheetError, contact_sheet};
 pub use error::{SceneError, SceneProblem};
 pub use file::{
     CameraFile, DirectionalLightFile, Encoding, EnvironmentFile, FeatherSheetFile, ImageFile, LightFile, MaterialFile,

@@ -40,8 +40,13 @@ impl SceneFile {
             _ => unreadable(error.to_string().split(" (os error").next().unwrap_or_default().to_owned()),
         })?;
         let text = String::from_utf8(text).map_err(|_| unreadable("it is not UTF-8 text".to_owned()))?;
-        let scene = parse(&text).map_err(|message| SceneProblem::Syntax { message }.of(&path))?;
+        let scene = Self::parse(&text).map_err(|problem| problem.of(&path))?;
         Ok((scene, path))
+    }
+
+    /// A scene from its text.
+    pub(super) fn parse(text: &str) -> Result<Self, SceneProblem> {
+        parse(text).map_err(|message| SceneProblem::Syntax { message })
     }
 }
 

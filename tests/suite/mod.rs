@@ -4,6 +4,7 @@ mod checkpoint;
 mod coated_base;
 mod colour;
 mod command_line;
+mod contact_sheet;
 mod coverage;
 mod coverage_models;
 mod cylinder;

@@ -315,6 +315,28 @@ fn ties_follow_what_is_swept() {
     Desk::with("tied.toml", job).barbule("sweep tied.toml").complains(&["it is tied", "sweep film.thickness_nm, or"]);
 }
 
+/// What moves along has the values of its place, in readings, in slopes along the sweep and in the tables.
+#[test]
+fn a_parameter_moves_along_with_another() {
+    let albedo = "albedo = { from = 0.25, to = 0.75, steps = 3 }";
+    let along = "albedo = { values = [0.75, 0.25, 0.5], along = { gain = [2, 1, 0.5] } }";
+    let sweep = swept(&grey_with(albedo, along));
+    for (cell, [albedo, gain]) in sweep.cells.iter().zip([[0.75, 2.0], [0.25, 1.0], [0.5, 0.5]]) {
+        // f = gain · ρ/π, and the slope by ρ is gain/π.
+        cell.readings.iter().flatten().for_each(|reading| close(*reading, gain * albedo * FRAC_1_PI, 1e-14));
+    }
+    // L* goes with (gain · ρ · exposure)^⅓, so that ΔE2000 per unit of ρ is (116/3) L* slope over S_L at the cell's gain.
+    let exposure = 1.0 / 1.5; // the brightest, 2 · 0.75, is darkened to 1
+    for (slope, [albedo, gain]) in sweep.slopes_along.iter().zip([[0.75, 2.0], [0.25, 1.0], [0.5, 0.5f64]]) {
+        let y: f64 = gain * albedo * exposure;
+        close(slope.differences[0].per_unit, 116.0 / 3.0 * y.cbrt() / albedo / weight(lightness(y)), 1e-9);
+    }
+    let desk = Desk::with("grey.toml", grey_with(albedo, along));
+    desk.barbule("sweep grey.toml --out out").succeeds().prints("Over albedo with gain from 0.75 to 0.5 (3 values)");
+    assert!(desk.read("out/colours.csv").starts_with("cell,albedo,gain,id,"));
+    assert!(desk.read("out/colours.csv").contains("\n2,0.25,1,"));
+}
+
 #[test]
 fn command_line_settings_move_the_own_values() {
     let job = Job::from_text("grey", GREY, Path::new(".")).unwrap();
@@ -354,6 +376,15 @@ fn a_mistake_in_a_sweep_is_a_sentence() {
             "albedo = { from = 0, to = 0.75, steps = 3, spacing = \"logarithmic\" }",
             ["line 16", "logarithmic spacing", "above 0"],
         ),
+        (
+            "albedo = { values = [0.5, 0.1], along = { gain = [1] } }",
+            ["line 16", "along.\"gain\": found 1 values", "expected 2, one for each of albedo"],
+        ),
+        (
+            "albedo = { values = [0.5, 0.1], along = { albedo = [1, 0] } }",
+            ["line 16", "albedo: this grid moves it twice", "take one of the two away"],
+        ),
+        ("albedo = { values = [0.5], along = { gian = [1] } }", ["line 16", "along.\"gian\"", "did you mean `gain`"]),
         ("", ["line 15: sweep.grid", "found 0 parameters", "one or two"]),
         (
             "albedo = { values = [0.5] }\n[sweep.sobol]\nsamples = 1000",
@@ -435,6 +466,9 @@ fn shipped_sweeps_can_be_run() {
         ("sweep-thickness", "381 values of cortex.thickness_nm, 162 readings each"),
         ("sweep-roughness", "7 values of roughness × 96 values of cortex.thickness_nm"),
         ("sweep-iridescent", "4 values of roughness × 309 values of thickness_nm, 6 readings each"),
+        ("sweep-thesis2-figure-4.2", "3 values of eta_r with eta_b with eta_g × 5 values of thickness_nm"),
+        ("sweep-thesis2-figure-4.3", "3 values of eta_r with eta_b with eta_g × 5 values of thickness_nm"),
+        ("sweep-thesis2-figure-4.4", "5 values of roughness × 5 values of thickness_nm"),
     ] {
         Desk::empty().barbule(&format!("check {}", shipped(name))).succeeds().prints(says);
     }

@@ -2,6 +2,7 @@
 
 use super::outcome::{Sweep, Varying};
 use crate::number::{plain, significant, with_error};
+use crate::parameter::Parameter;
 use crate::sensitivity::Indices;
 
 /// The sentences, one a line.
@@ -16,15 +17,19 @@ fn with_unit(value: f64, unit: &str) -> String {
     if unit.is_empty() { plain(value) } else { format!("{} {unit}", plain(value)) }
 }
 
+fn setting(name: &str, parameter: &Parameter, value: f64) -> String {
+    format!("{name} = {}", with_unit(value, parameter.unit))
+}
+
 fn over_the_grid(sweep: &Sweep) -> String {
     let axes: Vec<String> = sweep
         .axes
         .iter()
         .map(|axis| match axis.values.as_slice() {
-            [value] => format!("{} = {}", axis.parameter.name, with_unit(*value, axis.parameter.unit)),
+            [value] => axis.at(*value).map(|(p, value)| setting(&p.name, p, value)).collect::<Vec<_>>().join(", "),
             [first, .., last] => format!(
                 "{} from {} to {} ({} values)",
-                axis.parameter.name,
+                axis.parameters().map(|parameter| parameter.name.as_str()).collect::<Vec<_>>().join(" with "),
                 plain(*first),
                 with_unit(*last, axis.parameter.unit),
                 axis.values.len()
@@ -48,7 +53,8 @@ fn over_the_grid(sweep: &Sweep) -> String {
                 .axes
                 .iter()
                 .zip(&sweep.cells[cell].values)
-                .map(|(axis, value)| format!("{} = {}", axis.parameter.symbol, with_unit(*value, axis.parameter.unit)))
+                .flat_map(|(axis, value)| axis.at(*value))
+                .map(|(parameter, value)| setting(&parameter.symbol, parameter, value))
                 .collect();
             format!(
                 "{over} the colour differs from the first one by up to ΔE₀₀ = {}, at {} seen at {}.",

@@ -1,6 +1,7 @@
 //! The `[sweep]` section of a job as it is typed.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,21 @@ pub struct SweepFile {
     /// How the shares of the variance (Sobol indices) over the ranges of the free parameters are estimated. They are
     /// estimated without this section too where `parameters` frees any.
     pub sobol: Option<SobolFile>,
+    /// Pictures of every cell, on one contact sheet; `[sweep.render]` alone shows a sphere between a window and a lamp.
+    pub render: Option<RenderFile>,
+}
+
+/// What the pictures of a sweep's cells show.
+///
+/// A picture has three channels. Where the job's data have three wavelengths, the pictures are made at those, else at the
+/// scene's.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RenderFile {
+    /// A scene (JSON) beside the job, with the size, the samples and the exposure of each picture; without it a sphere.
+    pub scene: Option<PathBuf>,
+    /// The scene's material in whose place the job's model stands, with the values of each cell.
+    pub material: Option<String>,
 }
 
 /// The values of one parameter: `from`, `to` and `steps`, or a list.
@@ -33,6 +49,10 @@ pub struct AxisFile {
     pub spacing: Spacing,
     /// The values themselves, instead of the above.
     pub values: Option<Vec<f64>>,
+    /// Other parameters that move along, with as many values each: the first goes with the first. Where they follow by
+    /// sums and factors, tie them under `parameters` instead.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub along: BTreeMap<String, Vec<f64>>,
 }
 
 /// How values are spread.

@@ -86,8 +86,8 @@ impl Forward {
         self.views.iter().map(|view| view.wavelengths_nm.len()).sum()
     }
 
-    /// The model's readings with some parameters moved from the job's own values, one list a view.
-    pub(super) fn readings(&self, moved: &[(usize, f64)]) -> Result<Vec<Vec<f64>>, Refusal> {
+    /// All values with some parameters moved from the job's own.
+    pub(super) fn values(&self, moved: &[(usize, f64)]) -> Result<Vec<f64>, Refusal> {
         let mut values = self.own.clone();
         for &(index, value) in moved {
             values[index] = value;
@@ -101,6 +101,12 @@ impl Forward {
             check_inside(parameter, *value)
                 .map_err(|problem| Refusal(format!("{}, {}: {problem}", self.place(moved), parameter.name)))?;
         }
+        Ok(values)
+    }
+
+    /// The model's readings with some parameters moved from the job's own values, one list a view.
+    pub(super) fn readings(&self, moved: &[(usize, f64)]) -> Result<Vec<Vec<f64>>, Refusal> {
+        let values = self.values(moved)?;
         let readings = self.problem.readings(&values);
         for (view, readings) in self.views.iter().zip(&readings) {
             if let Some(bad) = readings.iter().position(|reading| !reading.is_finite()) {

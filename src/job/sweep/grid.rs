@@ -18,8 +18,43 @@ pub struct SweepAxis {
     pub values: Vec<f64>,
     /// Whether they are spread in the logarithm.
     pub is_logarithmic: bool,
+    /// Parameters that move along, with as many values each.
+    pub along: Vec<Companion>,
     /// Index among all parameters.
     pub(super) index: usize,
+}
+
+/// A parameter that moves along with a swept one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Companion {
+    /// Its declaration.
+    pub parameter: Parameter,
+    /// Its values, in the order of the swept one's.
+    pub values: Vec<f64>,
+    /// Index among all parameters.
+    index: usize,
+}
+
+impl SweepAxis {
+    /// The parameters that this axis moves, the swept one first.
+    pub fn parameters(&self) -> impl Iterator<Item = &Parameter> {
+        std::iter::once(&self.parameter).chain(self.along.iter().map(|other| &other.parameter))
+    }
+
+    /// The parameters that this axis moves, each with what it has where the swept one has `value`, which comes first.
+    pub fn at(&self, value: f64) -> impl Iterator<Item = (&Parameter, f64)> {
+        // Most axes move one parameter, and have no need to look.
+        let find = || self.values.iter().position(|own| own.total_cmp(&value).is_eq());
+        let place = if self.along.is_empty() { None } else { find() };
+        let along = self.along.iter().filter_map(move |other| Some((&other.parameter, *other.values.get(place?)?)));
+        std::iter::once((&self.parameter, value)).chain(along)
+    }
+
+    /// The same by indices among all parameters.
+    pub(super) fn moved(&self, value: f64) -> impl Iterator<Item = (usize, f64)> {
+        let indices = std::iter::once(self.index).chain(self.along.iter().map(|other| other.index));
+        indices.zip(self.at(value).map(|(_, value)| value))
+    }
 }
 
 /// The checked axes of a sweep, the one with most values last: cells run through it first.
@@ -38,6 +73,16 @@ pub(super) fn axes(
         .collect::<Result<Vec<_>, _>>()?;
     // Names in alphabetical order where both have as many.
     axes.sort_by_key(|axis| axis.values.len());
+    let mut moved: Vec<&Parameter> = Vec::new();
+    for axis in &axes {
+        for (parameter, _) in axis.at(axis.values[0]) {
+            if moved.iter().any(|other| other.name == parameter.name) {
+                let problem = "this grid moves it twice; take one of the two away";
+                return Err(JobError::key(key(&axis.parameter.name), format!("{}: {problem}", parameter.name)));
+            }
+            moved.push(parameter);
+        }
+    }
     Ok(axes)
 }
 
@@ -55,6 +100,34 @@ pub(super) fn cells(axes: &[SweepAxis]) -> Vec<Vec<f64>> {
 }
 
 fn axis(name: &str, file: &AxisFile, declared: &[Parameter], assignments: &[Assignment]) -> Result<SweepAxis, String> {
+    let values = values(file)?;
+    let index = checked_index(name, &values, declared, assignments)?;
+    let mut sorted = values.clone();
+    sorted.sort_by(f64::total_cmp);
+    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] >= pair[1]) {
+        return Err(format!("found {} twice; write each value once", pair[0]));
+    }
+    let along = file.along.iter().map(|(other, with)| {
+        let wrong = |problem: String| format!("along.\"{other}\": {problem}");
+        if with.len() != values.len() {
+            let problem = format!("found {} values; expected {}, one for each of {name}", with.len(), values.len());
+            return Err(wrong(problem));
+        }
+        let index = checked_index(other, with, declared, assignments).map_err(wrong)?;
+        Ok(Companion { parameter: declared[index].clone(), values: with.clone(), index })
+    });
+    let along = along.collect::<Result<_, String>>()?;
+    let is_logarithmic = file.spacing == Spacing::Logarithmic;
+    Ok(SweepAxis { parameter: declared[index].clone(), values, is_logarithmic, along, index })
+}
+
+/// The index of a parameter that a grid may give these values.
+fn checked_index(
+    name: &str,
+    values: &[f64],
+    declared: &[Parameter],
+    assignments: &[Assignment],
+) -> Result<usize, String> {
     let index = index_of(declared, name)?;
     let parameter = &declared[index];
     if let Role::Tied { terms, .. } = &assignments[index].role {
@@ -62,22 +135,15 @@ fn axis(name: &str, file: &AxisFile, declared: &[Parameter], assignments: &[Assi
         let instead = if others.is_empty() { String::new() } else { format!("sweep {}, or ", others.join(" or ")) };
         return Err(format!("it is tied and follows other parameters; {instead}take the tie away"));
     }
-    let values = values(file)?;
-    for value in &values {
+    for value in values {
         check_inside(parameter, *value)?;
     }
-    let mut sorted = values.clone();
-    sorted.sort_by(f64::total_cmp);
-    if let Some(pair) = sorted.windows(2).find(|pair| pair[0] >= pair[1]) {
-        return Err(format!("found {} twice; write each value once", pair[0]));
-    }
-    let is_logarithmic = file.spacing == Spacing::Logarithmic;
-    Ok(SweepAxis { parameter: parameter.clone(), values, is_logarithmic, index })
+    Ok(index)
 }
 
 fn values(file: &AxisFile) -> Result<Vec<f64>, String> {
     match file {
-        AxisFile { values: Some(values), from: None, to: None, steps: None, spacing } => {
+        AxisFile { values: Some(values), from: None, to: None, steps: None, spacing, along: _ } => {
             if *spacing != Spacing::Linear {
                 return Err("`spacing` goes with `from`, `to` and `steps`, not with a list of values".into());
             }
@@ -87,7 +153,7 @@ fn values(file: &AxisFile) -> Result<Vec<f64>, String> {
                 _ => Ok(values.clone()),
             }
         }
-        AxisFile { values: None, from: Some(from), to: Some(to), steps: Some(steps), spacing } => {
+        AxisFile { values: None, from: Some(from), to: Some(to), steps: Some(steps), spacing, along: _ } => {
             if *steps < 2 {
                 return Err(format!(
                     "found {steps} steps; expected 2 or more (for a single value write `{{ values = [{from}] }}`)"

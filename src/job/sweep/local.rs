@@ -11,8 +11,8 @@ use crate::sensitivity::{Derivative, DerivativeError, Range, derivative};
 /// rounding.
 const LAB_STEP: f64 = 1e-3;
 
-/// Slopes by parameter `index` at `value`, all others at the job's own values; `with_readings` leaves those of the readings
-/// out where they are not wanted.
+/// Slopes by parameter `index` at `value`, `others` at theirs and the rest at the job's own values; `with_readings` leaves
+/// those of the readings out where they are not wanted.
 ///
 /// ΔE2000 per unit is that of the slope of L*, a* and b*: ΔE2000 of a change that is small in all three grows in proportion.
 pub(super) fn slope(
@@ -20,11 +20,13 @@ pub(super) fn slope(
     colours: &ColourMaker,
     exposure: f64,
     (index, value): (usize, f64),
+    others: &[(usize, f64)],
     with_readings: bool,
 ) -> Result<Slope, JobError> {
     let parameter = &forward.parameters()[index];
+    let at = |value: f64| std::iter::once((index, value)).chain(others.iter().copied()).collect::<Vec<_>>();
     let evaluate = |value: f64| -> Result<Vec<f64>, Refusal> {
-        let readings = forward.readings(&[(index, value)])?;
+        let readings = forward.readings(&at(value))?;
         let mut numbers = Vec::new();
         for (view, readings) in forward.views.iter().zip(&readings) {
             if let Some(colour) = colours.colour(view, forward.quantity, readings, exposure) {
@@ -43,7 +45,7 @@ pub(super) fn slope(
         error @ DerivativeError::NoRoom { .. } => JobError::key("sweep", format!("{}: {error}", parameter.name)),
     })?;
 
-    let here = forward.readings(&[(index, value)]).map_err(|refusal| refusal.at("sweep"))?;
+    let here = forward.readings(&at(value)).map_err(|refusal| refusal.at("sweep"))?;
     let mut differences = Vec::new();
     for (number, (view, readings)) in forward.views.iter().zip(&here).enumerate() {
         if let Some(colour) = colours.colour(view, forward.quantity, readings, exposure) {

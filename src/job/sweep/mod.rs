@@ -16,8 +16,8 @@ mod variance;
 
 use rayon::prelude::*;
 
-pub use file::{AxisFile, SobolFile, Spacing, SweepFile};
-pub use grid::SweepAxis;
+pub use file::{AxisFile, RenderFile, SobolFile, Spacing, SweepFile};
+pub use grid::{Companion, SweepAxis};
 pub use outcome::{Cell, Colour, Excursion, Own, Rate, Slope, Sweep, Variance, VarianceOf, Varying, View};
 
 use self::answer::answer;
@@ -49,13 +49,18 @@ pub fn sweep(job: &Job, set: &Values) -> Result<Sweep, JobError> {
 /// What a job's sweep would go through, in words, or what is wrong with it.
 pub(super) fn describe(job: &Job) -> Result<String, JobError> {
     let plan = plan(job, &Values::new()).map_err(|error| job.placed(error, 0))?;
-    let axis = |axis: &SweepAxis| format!("{} values of {}", axis.values.len(), axis.parameter.name);
+    let axis = |axis: &SweepAxis| {
+        let names: Vec<&str> = axis.parameters().map(|parameter| parameter.name.as_str()).collect();
+        format!("{} values of {}", axis.values.len(), names.join(" with "))
+    };
     let axes: Vec<String> = plan.axes.iter().map(axis).collect();
     let sobol = plan.sobol.map_or_else(str::to_owned, |settings| {
         let (samples, replicates) = (settings.samples, settings.replicates);
         format!("Sobol indices of {} free parameters from {replicates} × {samples} points", plan.free.len())
     });
-    Ok(format!("{}, {} readings each; {sobol}", axes.join(" × "), plan.forward.reading_count()))
+    let is_rendered = job.file.sweep.as_ref().is_some_and(|file| file.render.is_some());
+    let pictures = if is_rendered { "; a picture of each cell" } else { "" };
+    Ok(format!("{}, {} readings each; {sobol}{pictures}", axes.join(" × "), plan.forward.reading_count()))
 }
 
 /// A sweep, checked and ready to be run.
@@ -96,9 +101,14 @@ fn plan(job: &Job, set: &Values) -> Result<Plan, JobError> {
 fn run(job: &Job, set: &Values) -> Result<Sweep, JobError> {
     let Plan { case, inputs, axes, forward, free, sobol } = plan(job, set)?;
     let cells = grid::cells(&axes);
-    let moved = |values: &[f64]| axes.iter().map(|axis| axis.index).zip(values.iter().copied()).collect::<Vec<_>>();
+    let moved = |values: &[f64]| -> Vec<(usize, f64)> {
+        axes.iter().zip(values).flat_map(|(axis, value)| axis.moved(*value)).collect()
+    };
     let readings: Vec<_> = cells.par_iter().map(|values| forward.readings(&moved(values))).collect();
     let readings = readings.into_iter().collect::<Result<Vec<_>, _>>().map_err(|refusal| refusal.at("sweep.grid"))?;
+    let parameters: Vec<_> = cells.iter().map(|values| forward.values(&moved(values))).collect();
+    let parameters =
+        parameters.into_iter().collect::<Result<Vec<_>, _>>().map_err(|refusal| refusal.at("sweep.grid"))?;
     let own_readings = forward.readings(&[]).map_err(|refusal| refusal.at("parameters"))?;
 
     let colours = ColourMaker::new(&forward.views);
@@ -114,20 +124,24 @@ fn run(job: &Job, set: &Values) -> Result<Sweep, JobError> {
     };
     let cells: Vec<Cell> = cells
         .into_iter()
+        .zip(parameters)
         .zip(readings)
-        .map(|(values, readings)| Cell { values, colours: coloured(&readings), readings })
+        .map(|((values, parameters), readings)| Cell { values, parameters, colours: coloured(&readings), readings })
         .collect();
 
     let ranges = ranges(&axes, &free);
     let slopes = ranges
         .par_iter()
-        .map(|(index, ..)| slope(&forward, &colours, exposure, (*index, forward.own[*index]), true))
+        .map(|(index, ..)| slope(&forward, &colours, exposure, (*index, forward.own[*index]), &[], true))
         .collect::<Vec<_>>();
     let slopes_along = match axes.as_slice() {
         [axis] => axis
             .values
             .par_iter()
-            .map(|value| slope(&forward, &colours, exposure, (axis.index, *value), false))
+            .map(|value| {
+                let others: Vec<_> = axis.moved(*value).skip(1).collect();
+                slope(&forward, &colours, exposure, (axis.index, *value), &others, false)
+            })
             .collect::<Vec<_>>(),
         _ => Vec::new(),
     };

@@ -79,6 +79,8 @@ pub struct Colour {
 pub struct Cell {
     /// Value of each axis.
     pub values: Vec<f64>,
+    /// Value of every parameter, in the order of [`Own::parameters`].
+    pub parameters: Vec<f64>,
     /// Readings, one list a view.
     pub readings: Vec<Vec<f64>>,
     /// Colours, one a view; empty where readings have none.

@@ -1,6 +1,6 @@
 //! The tables of a sweep. Numbers are written in full, in the shortest form that reads back as the same number.
 
-use crate::job::{Cell, Slope, Sweep, Varying, View};
+use crate::job::{Cell, Slope, Sweep, SweepAxis, Varying, View};
 use crate::measure::Geometry;
 use crate::parameter::Spread;
 use crate::sensitivity::Side;
@@ -45,13 +45,15 @@ impl Table {
     }
 }
 
-/// Number of the cell from 1, and the value of each axis.
-fn cell_entries(number: usize, cell: &Cell) -> impl Iterator<Item = String> {
-    std::iter::once((number + 1).to_string()).chain(cell.values.iter().map(f64::to_string))
+/// Number of the cell from 1, and the value of each parameter that the grid moves.
+fn cell_entries(sweep: &Sweep, number: usize, cell: &Cell) -> impl Iterator<Item = String> {
+    let moved = sweep.axes.iter().zip(&cell.values).flat_map(|(axis, value)| axis.at(*value));
+    std::iter::once((number + 1).to_string()).chain(moved.map(|(_, value)| value.to_string()))
 }
 
 fn cell_header(sweep: &Sweep) -> impl Iterator<Item = &str> {
-    std::iter::once("cell").chain(sweep.axes.iter().map(|axis| axis.parameter.name.as_str()))
+    let moved = sweep.axes.iter().flat_map(SweepAxis::parameters);
+    std::iter::once("cell").chain(moved.map(|parameter| parameter.name.as_str()))
 }
 
 fn readings(sweep: &Sweep) -> Result<String, csv::Error> {
@@ -60,7 +62,7 @@ fn readings(sweep: &Sweep) -> Result<String, csv::Error> {
         for (view, readings) in sweep.views.iter().zip(&cell.readings) {
             for (nm, reading) in view.wavelengths_nm.iter().zip(readings) {
                 let reading = [nm.to_string(), reading.to_string()];
-                table.row(cell_entries(number, cell).chain(view_entries(view)).chain(reading))?;
+                table.row(cell_entries(sweep, number, cell).chain(view_entries(view)).chain(reading))?;
             }
         }
     }
@@ -77,7 +79,7 @@ fn colours(sweep: &Sweep) -> Result<String, csv::Error> {
             let lab = [colour.lab.l, colour.lab.a, colour.lab.b].map(|v| v.to_string());
             let outside = if colour.clipped { "yes" } else { "no" };
             let rest = [colour.hex.clone(), outside.to_owned(), colour.lab.delta_e_2000(first.lab).to_string()];
-            let entries = cell_entries(number, cell).chain(view_entries(view)).chain(numbers).chain([x, y]);
+            let entries = cell_entries(sweep, number, cell).chain(view_entries(view)).chain(numbers).chain([x, y]);
             table.row(entries.chain(lab).chain(rest))?;
         }
     }

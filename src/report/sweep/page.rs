@@ -2,6 +2,7 @@
 
 use askama::Template;
 
+use super::contact_sheet::Sheet;
 use super::plots::Place;
 use super::swept::{columns, inner, outer, setting, views};
 use crate::job::{Rate, Slope, Sweep, Varying};
@@ -36,10 +37,11 @@ const RIDDERS: Work = (
 );
 
 /// The page as HTML.
-pub(super) fn html(sweep: &Sweep, pictures: &[(Place, Picture)]) -> Result<String, ReportError> {
+pub(super) fn html(sweep: &Sweep, pictures: &[(Place, Picture)], sheet: Option<&Sheet>) -> Result<String, ReportError> {
     let (paragraphs, references) = methods(sweep);
     let page = Page {
         sweep,
+        sheet,
         figures: pictures.iter().map(|(place, picture)| (*place, FigureView::new(picture))).collect(),
         own: sweep
             .own
@@ -62,6 +64,7 @@ pub(super) fn html(sweep: &Sweep, pictures: &[(Place, Picture)]) -> Result<Strin
 #[template(path = "sweep.html")]
 struct Page<'a> {
     sweep: &'a Sweep,
+    sheet: Option<&'a Sheet>,
     figures: Vec<(Place, FigureView<'a>)>,
     /// Symbol, name, value, meaning.
     own: Vec<(&'a str, &'a str, String, &'a str)>,
@@ -129,7 +132,7 @@ impl ColourTable {
             rows.iter().flat_map(|row| columns.iter().map(|column| super::swept::cell(sweep, *row, *column))).collect();
         let rows = evenly(all.len(), MOST_ROWS).into_iter().map(|place| {
             let cell = &sweep.cells[all[place]];
-            let settings = sweep.axes.iter().zip(&cell.values).map(|(axis, value)| setting(&axis.parameter, *value));
+            let settings = sweep.axes.iter().zip(&cell.values).map(|(axis, value)| setting(axis, *value));
             let cells = shown.iter().map(|(view, _)| {
                 let colour = &cell.colours[*view];
                 let lab = [colour.lab.l, colour.lab.a, colour.lab.b].map(|v| crate::number::to_place(v, -1));

@@ -20,10 +20,13 @@ pub(super) fn axis_label(parameter: &Parameter) -> String {
     format!("{}, {}{unit}", parameter.symbol, parameter.name)
 }
 
-/// `d = 330 nm`.
-pub(super) fn setting(parameter: &Parameter, value: f64) -> String {
-    let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
-    format!("{} = {}{unit}", parameter.symbol, short(value))
+/// `d = 330 nm`, and what moves along.
+pub(super) fn setting(axis: &SweepAxis, value: f64) -> String {
+    let one = |(parameter, value): (&Parameter, f64)| {
+        let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
+        format!("{} = {}{unit}", parameter.symbol, short(value))
+    };
+    axis.at(value).map(one).collect::<Vec<_>>().join(", ")
 }
 
 /// A number to three significant digits at most, as a label has room for.

@@ -81,7 +81,7 @@ fn paths(sweep: &Sweep) -> Vec<Series> {
             let rows = columns(y);
             crate::report::angles::evenly(rows.len(), room)
                 .into_iter()
-                .map(|place| (rows[place], format!(", {}", setting(&y.parameter, y.values[rows[place]]))))
+                .map(|place| (rows[place], format!(", {}", setting(y, y.values[rows[place]]))))
                 .collect()
         }
     };
@@ -105,7 +105,7 @@ fn ends(sweep: &Sweep, paths: &[Series]) -> Vec<Series> {
     let [first, .., last] = order.as_slice() else { return Vec::new() };
     let end = |column: usize, mark: Mark, open: bool, pick: fn(&Series) -> Option<&Point>| {
         let places = paths.iter().filter_map(pick).map(|point| (point.x, point.y));
-        Series::new(setting(&x.parameter, x.values[column]), places, Look::Marks { colour: BLACK, mark, open })
+        Series::new(setting(x, x.values[column]), places, Look::Marks { colour: BLACK, mark, open })
     };
     vec![
         end(*first, Mark::Disc, true, |path| path.points.first()),

@@ -35,7 +35,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<Figure> {
         }
         Some(y) => {
             let outer_rows = super::super::swept::columns(y);
-            let names: Vec<String> = outer_rows.iter().map(|row| setting(&y.parameter, y.values[*row])).collect();
+            let names: Vec<String> = outer_rows.iter().map(|row| setting(y, y.values[*row])).collect();
             let height = (22.0 * length(names.len())).clamp(80.0, 320.0);
             let of_view = |(view, name): &(usize, String)| {
                 let rows = outer_rows.iter().map(|o| columns.iter().map(|c| colour(*o, *c, *view)).collect());

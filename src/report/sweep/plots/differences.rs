@@ -48,7 +48,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<Figure> {
         Some(y) => {
             let borders = borders(x, &columns);
             let rows = super::super::swept::columns(y);
-            let names: Vec<String> = rows.iter().map(|row| setting(&y.parameter, y.values[*row])).collect();
+            let names: Vec<String> = rows.iter().map(|row| setting(y, y.values[*row])).collect();
             let height = (22.0 * length(names.len())).clamp(80.0, 320.0);
             let all = shown
                 .iter()
@@ -77,8 +77,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<Figure> {
             (cells, width, false)
         }
     };
-    let first: Vec<String> =
-        sweep.axes.iter().zip(&first.values).map(|(axis, value)| setting(&axis.parameter, *value)).collect();
+    let first: Vec<String> = sweep.axes.iter().zip(&first.values).map(|(axis, value)| setting(axis, *value)).collect();
     let rates = if along {
         " Below: how fast the colour changes at each value, the slope of the colour by the parameter."
     } else {

@@ -89,7 +89,7 @@ fn panels(sweep: &Sweep) -> Vec<Panel> {
         Some(y) => {
             let order = columns(y);
             let chosen = evenly(order.len(), room).into_iter().map(|place| order[place]);
-            chosen.map(|row| (row, format!(", {}", setting(&y.parameter, y.values[row])))).collect()
+            chosen.map(|row| (row, format!(", {}", setting(y, y.values[row])))).collect()
         }
     };
     let both = rows.iter().flat_map(|row| shown.iter().map(move |view| (row, view)));
