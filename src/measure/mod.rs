@@ -1,4 +1,5 @@
-//! Measurements: the geometry of a reading, tables of readings, the instrument that took them, and colour.
+//! Measurements: the geometry of a reading, tables of readings, the instrument that took them, colour, and
+//! photographs.
 
 pub mod colour;
 mod compared;
@@ -8,6 +9,7 @@ mod guess;
 mod instrument;
 mod layout;
 mod peak;
+pub mod photograph;
 mod read;
 mod table;
 mod text;

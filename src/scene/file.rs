@@ -7,6 +7,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::job::ModelFile;
+use crate::measure::photograph::Encoding;
 use crate::render::{Sampler, ToneMapping};
 
 /// A scene: what stands where, what it is made of, what lights it, and how it is looked at. Lengths are mm.
@@ -141,16 +142,6 @@ pub struct TextureFile {
     /// What its numbers are; without this key, linear in an EXR and sRGB in all others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub encoding: Option<Encoding>,
-}
-
-/// What the numbers of a picture are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Encoding {
-    /// Coded for screens.
-    Srgb,
-    /// Proportional to what they stand for.
-    Linear,
 }
 
 /// Something that stands in the scene.

@@ -9,8 +9,9 @@ use sha2::{Digest, Sha256};
 use tobj::LoadOptions;
 
 use super::error::SceneProblem;
-use super::file::{Encoding, MeshFile};
+use super::file::MeshFile;
 use crate::measure::colour::decode;
+use crate::measure::photograph::Encoding;
 use crate::render::{Corner, Mesh, Texture, Vector};
 
 /// Reads files beside a scene, and keeps a digest of all that it has read.

@@ -13,12 +13,13 @@ mod material;
 mod read;
 mod schema;
 
+pub use crate::measure::photograph::Encoding;
 pub use check::CheckedScene;
 pub use contact_sheet::{ContactSheet, ContactSheetError, contact_sheet};
 pub use error::{SceneError, SceneProblem};
 pub use file::{
-    CameraFile, DirectionalLightFile, Encoding, EnvironmentFile, FeatherSheetFile, ImageFile, LightFile, MaterialFile,
-    MeshFile, ObjectFile, OrthographicFile, PatternFile, PerspectiveFile, PointLightFile, RectangleFile,
-    RectangleLightFile, SceneFile, SphereFile, SphereLightFile, TextureFile,
+    CameraFile, DirectionalLightFile, EnvironmentFile, FeatherSheetFile, ImageFile, LightFile, MaterialFile, MeshFile,
+    ObjectFile, OrthographicFile, PatternFile, PerspectiveFile, PointLightFile, RectangleFile, RectangleLightFile,
+    SceneFile, SphereFile, SphereLightFile, TextureFile,
 };
 pub use schema::schemas;

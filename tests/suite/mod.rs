@@ -30,6 +30,7 @@ mod optics;
 mod oracle;
 mod order;
 mod paints;
+mod photograph;
 mod pigment;
 mod pigmented_base;
 mod plain_tables;
