@@ -44,7 +44,8 @@ pub(super) fn case_answer(case: &Case) -> String {
         sentences.push(verdict.to_owned());
     }
     sentences.push(values_sentence(case));
-    if case.orders.len() < 2 {
+    // Of specimens, each has rivals of its own: all as if they were one have weights that mean little.
+    if case.orders.len() < 2 && case.population.is_none() {
         sentences.extend(rivals(fit));
     }
     if case.population.is_none() {

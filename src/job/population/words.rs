@@ -1,6 +1,6 @@
 //! What the specimens tell, in a few sentences.
 
-use super::{Effects, LeftOut, ParameterSpread, Population};
+use super::{Effects, LeftOut, ParameterSpread, Population, Specimen};
 use crate::job::JobFile;
 use crate::measure::{GonioTable, Quantity};
 use crate::number::{beside_error, significant, with_error};
@@ -88,14 +88,24 @@ fn prediction(left_out: &LeftOut, unit: Unit) -> String {
 
 /// On specimens whose own best minimum is another than the common one, or that allow others.
 fn branches(population: &Population) -> Option<String> {
-    let elsewhere: Vec<&str> =
-        population.specimens.iter().filter(|one| !one.own_best).map(|one| one.name.as_str()).collect();
-    (!elsewhere.is_empty()).then(|| {
-        format!(
-            "Values are of the minimum nearest to the common one; by themselves {} would have another.",
-            elsewhere.join(", ")
-        )
-    })
+    let names = |pick: &dyn Fn(&Specimen) -> bool| {
+        population.specimens.iter().filter(|one| pick(one)).map(|one| one.name.as_str()).collect::<Vec<_>>()
+    };
+    let (elsewhere, undecided) = (names(&|one| !one.own_best), names(&|one| !one.rivals.is_empty()));
+    let mut sentences = Vec::new();
+    if !elsewhere.is_empty() {
+        let list = elsewhere.join(", ");
+        sentences.push(format!(
+            "Values are of the minimum nearest to the common one; by themselves {list} would have another."
+        ));
+    }
+    if !undecided.is_empty() {
+        let (count, all) = (undecided.len(), population.specimens.len());
+        sentences.push(format!(
+            "Taken alone, {count} of {all} specimens do not rule out other minima, which the report lists."
+        ));
+    }
+    (!sentences.is_empty()).then(|| sentences.join(" "))
 }
 
 /// Unit of a misfit.

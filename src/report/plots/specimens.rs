@@ -51,7 +51,11 @@ fn spectra(population: &Population, label: &str) -> Figure {
     let more = if left_out > 0 { format!(" {left_out} more spectra are in result.json.") } else { String::new() };
     Figure {
         name: "specimens".to_owned(),
-        title: "Each specimen, its own fit and its prediction from the others".to_owned(),
+        title: if population.left_out.is_some() {
+            "Each specimen, its own fit and its prediction from the others".to_owned()
+        } else {
+            "Each specimen and its own fit".to_owned()
+        },
         caption: format!("All panels have one scale.{more}"),
         width: PAGE_WIDTH,
         columns: 3,
