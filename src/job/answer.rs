@@ -9,11 +9,18 @@ use crate::number::{minus, significant, to_place, with_error};
 /// Most parameters that a sentence can carry.
 const MOST_NAMED: usize = 3;
 
+/// Most groups of specimens that are each told in full.
+const MOST_GROUPS_IN_FULL: usize = 4;
+
 /// The answer of the whole job: the main case, then the others in a few words each.
 pub(super) fn job_answer(outcome: &Outcome) -> String {
     let mut sentences = Vec::new();
     if outcome.synthetic.is_some() {
         sentences.push("Synthetic readings, made from known values.".to_owned());
+    }
+    if outcome.cases.iter().filter(|case| !case.group.is_empty()).count() > MOST_GROUPS_IN_FULL {
+        sentences.push(groups_answer(&outcome.cases));
+        return sentences.join(" ");
     }
     let (main, others) = match outcome.cases.as_slice() {
         [] => return String::new(),
@@ -29,6 +36,18 @@ pub(super) fn job_answer(outcome: &Outcome) -> String {
     let others = others.iter().map(|case| format!("{}{}", heading(case), values_sentence(case)));
     let judged = outcome.comparison.as_ref().and_then(|comparison| comparison_answer(comparison, &outcome.cases));
     std::iter::once(main).chain(others).chain(judged).collect::<Vec<_>>().join("\n")
+}
+
+/// A line a group.
+fn groups_answer(cases: &[Case]) -> String {
+    let heading = "Mean over the specimens ± its error, in brackets the standard deviation between specimens; more on each group \
+                   in the report.";
+    let line = |case: &Case| {
+        let values =
+            case.population.as_ref().map_or_else(|| values_sentence(case), |population| population.brief.clone());
+        format!("{}: {values}", case.name)
+    };
+    std::iter::once(heading.to_owned()).chain(cases.iter().map(line)).collect::<Vec<_>>().join("\n")
 }
 
 /// The answer of one case.

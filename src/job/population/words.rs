@@ -47,6 +47,26 @@ pub(super) fn text(population: &Population, file: &JobFile, table: &GonioTable) 
     sentences.join(" ")
 }
 
+/// The same in a line, for tables of many groups.
+pub(super) fn brief(population: &Population) -> String {
+    let named: Vec<String> = population.parameters.iter().take(MOST_NAMED).filter_map(brief_spread).collect();
+    let count = population.specimens.len();
+    let values = if named.is_empty() { "nothing determined".to_owned() } else { named.join(", ") };
+    let undecided = population.specimens.iter().filter(|one| !one.rivals.is_empty()).count();
+    if undecided == 0 {
+        format!("{values}.")
+    } else {
+        format!("{values}; {undecided} of {count} specimens allow other minima.")
+    }
+}
+
+fn brief_spread(parameter: &ParameterSpread) -> Option<String> {
+    let Effects { mean, mean_standard_error, between, .. } = parameter.effects.as_ref()?;
+    let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
+    let mean_text = with_error(*mean, Some(*mean_standard_error));
+    Some(format!("{} {mean_text}{unit} ({})", parameter.symbol, beside_error(*between, Some(*mean_standard_error))))
+}
+
 fn spread(parameter: &ParameterSpread) -> Option<String> {
     let effects = parameter.effects.as_ref()?;
     let Effects { mean, mean_standard_error, between, between_interval_95: [low, high], within, shared, .. } = effects;
