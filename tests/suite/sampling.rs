@@ -156,7 +156,8 @@ fn tolerance(polar: usize) -> f64 {
 type Integrand<'a> = dyn Fn(&Direction, &mut [f64]) + 'a;
 
 /// Cuts a cell in four until that changes nothing, or `depth` times. There are steps: a GGX surface has vertical microfacets, and
-/// beyond what these refract there is nothing.
+/// beyond what these refract there is nothing. Where a step lies between a cell's edge and the first points of the rule, only
+/// the corners see it.
 fn refined(
     value: &Integrand<'_>,
     channels: usize,
@@ -166,7 +167,9 @@ fn refined(
     depth: usize,
 ) -> Vec<f64> {
     let whole = gauss(value, channels, corner, size);
-    if depth == 0 || whole.iter().all(|cell| *cell < tolerance) {
+    let small = whole.iter().all(|cell| *cell < tolerance);
+    let hidden = small && largest_at_corners(value, channels, corner, size) * size * size >= tolerance;
+    if depth == 0 || small && !hidden {
         return whole;
     }
     let half = 0.5 * size;
@@ -175,10 +178,20 @@ fn refined(
         (0..channels).map(|channel| parts.iter().map(|part| part[channel]).sum()).collect()
     };
     let finer = sum(quarters.map(|quarter| gauss(value, channels, quarter, half)));
-    if finer.iter().zip(&whole).all(|(finer, whole)| (finer - whole).abs() < tolerance) {
+    if !hidden && finer.iter().zip(&whole).all(|(finer, whole)| (finer - whole).abs() < tolerance) {
         return finer;
     }
     sum(quarters.map(|quarter| refined(value, channels, quarter, half, tolerance, depth - 1)))
+}
+
+fn largest_at_corners(value: &Integrand<'_>, channels: usize, (theta, phi): (f64, f64), size: f64) -> f64 {
+    let mut values = vec![0.0; channels];
+    let corners = [(0.0, 0.0), (0.0, size), (size, 0.0), (size, size)];
+    let at_corners = corners.map(|(a, b)| {
+        value(&spherical(theta + a, phi + b), &mut values);
+        (theta + a).sin() * values.iter().fold(0.0, |largest: f64, value| largest.max(*value))
+    });
+    at_corners.into_iter().fold(0.0, f64::max)
 }
 
 /// Gauss's rule of 4 × 4 points over a cell.
