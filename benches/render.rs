@@ -2,15 +2,20 @@
 //!
 //! Of the first, an element is one sample of one pixel: a camera ray, a texel, one direction towards the lamp and one of
 //! the surface's own with their shadow rays, in the whole pipeline from seed to picture. Of the second it is one path.
+//! Then the cheap rows of the second thesis's Table 4.5, its model beside that of Granier and Heidrich.
+
+#[path = "../examples/thesis2_table_4_5/scenes.rs"]
+mod scenes;
 
 use std::sync::atomic::AtomicBool;
 
-use barbule::bsdf::{Lambertian, Model, RoughPlastic, RoughPlasticDesign};
+use barbule::bsdf::{Lambertian, Model as BsdfModel, RoughPlastic, RoughPlasticDesign};
 use barbule::render::{
     Camera, Control, Light, Material, Projection, Rectangle, Resolution, Sampler, Scene, Settings, Strategies, Texture,
     Vector, render,
 };
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use scenes::{Lighting, Model};
 
 const RGB_NM: [f64; 3] = [645.0, 525.0, 445.0];
 
@@ -18,7 +23,7 @@ fn rectangle(corner: [f64; 3], u: [f64; 3], v: [f64; 3]) -> Rectangle {
     Rectangle::new(corner.into(), u.into(), v.into()).expect("it has an area")
 }
 
-fn defaults(model: &dyn Model, changes: &[(&str, f64)]) -> Vec<f64> {
+fn defaults(model: &dyn BsdfModel, changes: &[(&str, f64)]) -> Vec<f64> {
     let value = |name: &str, default| changes.iter().find(|(n, _)| *n == name).map_or(default, |(_, value)| *value);
     model.parameters().iter().map(|parameter| value(&parameter.name, parameter.default)).collect()
 }
@@ -105,5 +110,22 @@ fn samples(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, samples);
+/// Rows of 16 and 64 samples; the dearer ones are those of `examples/thesis2_table_4_5`.
+fn table(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("thesis2-table-4.5");
+    group.sample_size(10);
+    for (light, lighting) in [("direct", Lighting::Direct), ("global", Lighting::Global)] {
+        for samples in [16, 64] {
+            for (name, model) in [("Granier", Model::Granier), ("iridescent plastic", Model::IridescentPlastic)] {
+                let scene = scenes::scene(model, lighting, samples).expect("the scene is part of the project");
+                group.bench_function(format!("{light}, {samples} samples, {name}"), |bencher| {
+                    bencher.iter(|| scenes::picture(&scene).expect("nothing stops it"));
+                });
+            }
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, samples, table);
 criterion_main!(benches);

@@ -30,15 +30,14 @@ fn line(t: f64) -> Vector3<f64> {
     REACH_MM / 3.0 * Vector3::new(from_axis * (2.0 * t).sin(), (3.0 * t).sin(), -from_axis * (2.0 * t).cos())
 }
 
-/// The tube's normal at an angle around its line, in the frame of the line's tangent and curvature (Frenet), which closes on
-/// itself because the curvature is nowhere 0.
+/// The tube's normal at an angle around its line, from the normal of the torus on which the knot winds. (The line's own
+/// curvature nearly vanishes in places, and a frame that hangs on it twists the tube there until it pinches.)
 fn normal(t: f64, angle: f64) -> Vector3<f64> {
     const STEP: f64 = 1e-4;
-    let (before, here, after) = (line(t - STEP), line(t), line(t + STEP));
-    let tangent = (after - before).normalize();
-    let bend = after + before - 2.0 * here;
-    let across = (bend - tangent * tangent.dot(&bend)).normalize();
-    across * angle.cos() + tangent.cross(&across) * angle.sin()
+    let tangent = (line(t + STEP) - line(t - STEP)).normalize();
+    let around = (3.0 * t).cos();
+    let outwards = Vector3::new(around * (2.0 * t).sin(), (3.0 * t).sin(), -around * (2.0 * t).cos());
+    outwards * angle.cos() + tangent.cross(&outwards) * angle.sin()
 }
 
 /// As Wavefront OBJ: positions, normals, texture coordinates (along the tube, around it), and quadrangles.

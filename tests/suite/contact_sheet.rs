@@ -7,10 +7,10 @@ use std::sync::atomic::AtomicBool;
 
 use barbule::job::{self, Job};
 use barbule::render::{Control, Picture, render};
-use barbule::scene::{CheckedScene, ContactSheet, SceneFile, contact_sheet};
+use barbule::scene::{CheckedScene, ContactSheet, MaterialFile, SceneFile, contact_sheet};
 use serde_json::{Value, json};
 
-use super::desk::{Desk, replaced};
+use super::desk::{Desk, replaced, shipped};
 
 static INTERRUPT: AtomicBool = AtomicBool::new(false);
 const CONTROL: Control<'static> = Control { interrupt: &INTERRUPT, progress: &|_, _| (), checkpoint: None };
@@ -175,6 +175,31 @@ fn the_sphere_of_a_job_that_names_no_scene() {
     assert!(picture.pixels[0].iter().all(|channel| (channel - 0.2).abs() < 1e-6), "{:?}", picture.pixels[0]);
     let at = |x: usize, y: usize| picture.pixels[picture.width as usize * y + x][1];
     assert!(at(60, 60) > 1.2 * at(80, 130), "{} against {}", at(60, 60), at(80, 130));
+}
+
+/// The scenes of the shipped sweeps are there, have the material, and show the job's model: here 12 × 9 pixels of each.
+#[test]
+fn every_shipped_sweep_finds_its_scene() {
+    let mut found = 0;
+    for folder in fs::read_dir(shipped("")).unwrap() {
+        let folder = folder.unwrap().path();
+        if !folder.join("job.toml").is_file() {
+            continue;
+        }
+        let job = Job::read(&folder).unwrap();
+        let Some(design) = job.file.sweep.and_then(|sweep| sweep.render) else { continue };
+        let (Some(scene), Some(material)) = (design.scene, design.material) else { continue };
+        let (mut file, path) = SceneFile::read(&folder.join(scene)).unwrap();
+        (file.image.width, file.image.height, file.image.samples) = (12, 9, 1);
+        let model = MaterialFile { model: job.file.model, parameters: BTreeMap::new(), texture: None };
+        assert!(file.materials.insert(material, model).is_some(), "{}", folder.display());
+        let checked = CheckedScene::new(&file, &path).unwrap_or_else(|error| panic!("{error}"));
+        let picture = render(&checked.scene, checked.resolution, checked.settings, &CONTROL).unwrap();
+        assert!(picture.pixels.iter().flatten().all(|channel| *channel >= 0.0));
+        Desk::empty().barbule(&format!("check {}", folder.display())).succeeds().prints("a picture of each cell");
+        found += 1;
+    }
+    assert!(found >= 10, "only {found} sweeps name a scene");
 }
 
 #[test]
