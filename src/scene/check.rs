@@ -60,6 +60,12 @@ fn check(file: &SceneFile, path: &Path) -> Result<CheckedScene, SceneProblem> {
         let problem = format!("found {stops}; expected a number of stops from -50 to 50");
         return Err(SceneProblem::key("image.tone.exposure_stops", problem));
     }
+    let [red, green, blue] = file.wavelengths_nm;
+    if !(red > green && green > blue) {
+        let problem =
+            format!("found [{red}, {green}, {blue}]; expected those of red, green and blue, the longest first");
+        return Err(SceneProblem::key("wavelengths_nm", problem));
+    }
     let camera = camera(&file.camera)?;
     let mut inputs = Inputs::beside(path);
     let mut materials = Vec::new();

@@ -19,7 +19,7 @@ pub struct SceneFile {
     /// Remarks and sources.
     #[serde(default)]
     pub about: String,
-    /// Wavelengths of the three channels, nm, shown as the linear red, green and blue of Rec. 709.
+    /// Wavelengths of the three channels, nm, the longest first, shown as the linear red, green and blue of Rec. 709.
     #[serde(default = "default_wavelengths_nm")]
     pub wavelengths_nm: [f64; 3],
     /// The picture to make.

@@ -103,6 +103,7 @@ fn a_slip_in_a_scene_is_a_sentence() {
         ("/materials/ball/parameters/roughnes", json!(0.1), &["ball.parameters.roughnes", "mean `roughness`"]),
         ("/materials/ball/parameters/roughness", json!(7), &["materials.ball.parameters", "`roughness` is 7"]),
         ("/materials/ball/model/kind", json!("thin-film-law"), &["materials.ball.model", "peak wavelengths"]),
+        ("/wavelengths_nm", json!([445, 525, 645]), &["wavelengths_nm: found [445, 525, 645]", "the longest first"]),
         ("/wavelengths_nm", json!([645, 525, -1]), &["materials.ball.model", "a wavelength is -1"]),
     ] {
         refused(pointer, value, parts);
