@@ -53,16 +53,21 @@ impl CoatSampler {
     }
 
     /// See [`Bsdf::sample`](super::Bsdf::sample).
-    pub(super) fn sample(&self, outgoing: &Direction, [first, second, choice]: [f64; 3]) -> Option<Sample> {
+    pub(super) fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
+        let incoming = self.direction(outgoing, random)?;
+        Some(Sample::scattered(incoming, self.density(&incoming, outgoing)))
+    }
+
+    /// The direction of a draw.
+    pub(super) fn direction(&self, outgoing: &Direction, [first, second, choice]: [f64; 3]) -> Option<Direction> {
         if outgoing.z <= 0.0 {
             return None;
         }
-        let incoming = if Choice(choice).takes(self.gloss_probability(outgoing.z)) {
-            self.mirrored(outgoing, [first, second])?
+        if Choice(choice).takes(self.gloss_probability(outgoing.z)) {
+            self.mirrored(outgoing, [first, second])
         } else {
-            cosine_lobe([first, second])
-        };
-        Some(Sample::scattered(incoming, self.density(&incoming, outgoing)))
+            Some(cosine_lobe([first, second]))
+        }
     }
 
     /// See [`Bsdf::density`](super::Bsdf::density). A visible normal has the density D G1 (o·m)/cosθo, the direction that it

@@ -113,6 +113,17 @@ pub trait Bsdf: Send + Sync {
     /// None: the draw is rejected, because its direction lies where no light comes from; it counts as no light.
     fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample>;
 
+    /// [`Bsdf::sample`] for many viewers at a time; its densities may be less exact, as those of [`Bsdf::density_many`].
+    ///
+    /// # Panics
+    /// If the lengths do not fit each other: that is the caller's slip, not a user's.
+    fn sample_many(&self, outgoing: &[Direction], random: &[[f64; 3]], samples: &mut [Option<Sample>]) {
+        assert!(outgoing.len() == random.len() && outgoing.len() == samples.len(), "one sample a viewer");
+        for ((outgoing, random), sample) in outgoing.iter().zip(random).zip(samples) {
+            *sample = self.sample(outgoing, *random);
+        }
+    }
+
     /// The density with which [`Bsdf::sample`] draws `incoming`, 1/sr. Its integral over the sphere, the share of rejected
     /// draws and that of straight-through ones sum to 1. Above 0 wherever [`Bsdf::evaluate`] is. Allocates nothing.
     fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64;

@@ -239,6 +239,10 @@ struct BoundRoughPlastic {
 }
 
 impl BoundRoughPlastic {
+    fn directions(&self) -> &DirectionTable {
+        self.directions.get_or_init(|| DirectionTable::new(&self.coat, &self.transmittance))
+    }
+
     fn sampler(&self) -> &CoatSampler {
         self.sampler.get_or_init(|| {
             let of_mean = 1.0 / self.specular.len() as f64;
@@ -273,12 +277,15 @@ impl Bsdf for BoundRoughPlastic {
     }
 
     fn evaluate_many(&self, incoming: &[Direction], outgoing: &[Direction], values: &mut [f64]) {
-        let directions = self.directions.get_or_init(|| DirectionTable::new(&self.coat, &self.transmittance));
-        batch::evaluate(self, directions, incoming, outgoing, values);
+        batch::evaluate(self, self.directions(), incoming, outgoing, values);
     }
 
     fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
         self.sampler().sample(outgoing, random)
+    }
+
+    fn sample_many(&self, outgoing: &[Direction], random: &[[f64; 3]], samples: &mut [Option<Sample>]) {
+        densities::sample(self, self.directions(), outgoing, random, samples);
     }
 
     fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
@@ -286,7 +293,6 @@ impl Bsdf for BoundRoughPlastic {
     }
 
     fn density_many(&self, incoming: &[Direction], outgoing: &[Direction], densities: &mut [f64]) {
-        let directions = self.directions.get_or_init(|| DirectionTable::new(&self.coat, &self.transmittance));
-        densities::fill(self, directions, incoming, outgoing, densities);
+        densities::fill(self, self.directions(), incoming, outgoing, densities);
     }
 }

@@ -7,6 +7,7 @@
 use std::f64::consts::{FRAC_1_PI, FRAC_PI_4};
 
 use super::Direction;
+use crate::optics::elementary::sin_cos;
 
 /// A direction that a scattering function drew for a viewer.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,23 +31,27 @@ impl Sample {
 
 /// A point of the unit disk for a point of the unit square, areas kept and neighbours near: the concentric map (Shirley
 /// and Chiu 1997). The second thesis's equation 3.9 has one of its four sectors only.
+#[inline]
 pub(super) fn on_disk(random: [f64; 2]) -> (f64, f64) {
     let [a, b] = random.map(|number| 2.0 * number - 1.0);
     if a == 0.0 && b == 0.0 {
         return (0.0, 0.0);
     }
     let (radius, azimuth) = if a.abs() > b.abs() { (a, FRAC_PI_4 * (b / a)) } else { (b, FRAC_PI_4 * (2.0 - a / b)) };
-    (radius * azimuth.cos(), radius * azimuth.sin())
+    let (sine, cosine) = sin_cos(azimuth);
+    (radius * cosine, radius * sine)
 }
 
 /// A direction above the horizon, drawn with [`cosine_density`]: the disk lifted to the hemisphere (Malley), z = √(1 − r²),
 /// where the second thesis's equation 3.10 has another root.
+#[inline]
 pub(super) fn cosine_lobe(random: [f64; 2]) -> Direction {
     let (x, y) = on_disk(random);
     Direction::new(x, y, (1.0 - x * x - y * y).max(0.0).sqrt())
 }
 
 /// cosθ/π above the horizon, 0 below, 1/sr.
+#[inline]
 pub(super) fn cosine_density(direction: &Direction) -> f64 {
     direction.z.max(0.0) * FRAC_1_PI
 }

@@ -53,11 +53,13 @@ impl Camera {
     }
 
     /// The ray that meets this place in the picture.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         let aside = self.right * (x * self.height) + self.up * (y * self.height);
         if self.converges {
-            Ray { origin: self.position, direction: (self.forward + aside).normalize() }
+            let direction = self.forward + aside;
+            // One division, not three.
+            Ray { origin: self.position, direction: direction * (1.0 / direction.norm()) }
         } else {
             Ray { origin: self.position + aside, direction: self.forward }
         }

@@ -14,9 +14,9 @@
 use super::light::Light;
 use super::material::{BoundMaterial, CHANNELS};
 use super::ray::{Colour, Frame, Hit, Ray, Vector};
-use super::sampler::{PixelSampler, Sampler};
+use super::sampler::{PixelSeed, SampleNumbers, Sampler};
 use super::scene::{Meaning, Scene};
-use crate::bsdf::Direction;
+use crate::bsdf::{Direction, Sample};
 
 /// Scatterings before a path may end by chance.
 const SURE_SCATTERINGS: u32 = 3;
@@ -69,7 +69,7 @@ struct Path {
     events: u32,
     /// Place in the tile's sums.
     pixel: usize,
-    sampler: PixelSampler,
+    seed: PixelSeed,
     /// Numbers of the first event that the camera's group has left.
     spare: [f64; 2],
 }
@@ -77,13 +77,13 @@ struct Path {
 impl Path {
     /// The numbers of the event that it has come to: one group of four dimensions and a part of a second. At the first
     /// event that part is what the camera has left, since no path ends there by chance.
-    #[inline]
-    fn numbers(&self) -> EventNumbers {
-        let [u, v, a, b] = self.sampler.four(2 * self.events - 1);
+    #[inline(always)]
+    fn numbers(&self, sample: &SampleNumbers) -> EventNumbers {
+        let [u, v, a, b] = sample.four(self.seed, 2 * self.events - 1);
         let [c, choose, chance] = match self.events {
             1 => [self.spare[0], self.spare[1], 0.0],
             _ => {
-                let [c, choose, chance, _] = self.sampler.four(2 * self.events);
+                let [c, choose, chance, _] = sample.four(self.seed, 2 * self.events);
                 [c, choose, chance]
             }
         };
@@ -149,6 +149,8 @@ pub(super) struct Workspace {
     tasks: Vec<Task>,
     incoming: Vec<Direction>,
     outgoing: Vec<Direction>,
+    random: Vec<[f64; 3]>,
+    drawn: Vec<Option<Sample>>,
     values: Vec<f64>,
     densities: Vec<f64>,
     alive: Vec<bool>,
@@ -193,6 +195,7 @@ impl<'a> Integrator<'a> {
     }
 
     /// Adds one sample of each pixel of a tile to its sums, row by row.
+    #[inline(always)]
     pub(super) fn add_sample(
         &self,
         size: [u32; 2],
@@ -201,10 +204,11 @@ impl<'a> Integrator<'a> {
         workspace: &mut Workspace,
         sums: &mut [Colour],
     ) {
-        self.start_paths(size, tile, index, &mut workspace.paths);
+        let sample = SampleNumbers::new(self.settings.sampler, self.settings.seed, index);
+        self.start_paths(&sample, size, tile, &mut workspace.paths);
         workspace.vertices.resize_with(self.materials.len(), Vec::new);
         while !workspace.paths.is_empty() {
-            self.meet(workspace, sums);
+            self.meet(&sample, workspace, sums);
             for number in 0..self.materials.len() {
                 // Taken out, so that the rest of the workspace is free while it is read.
                 let vertices = std::mem::take(&mut workspace.vertices[number]);
@@ -219,16 +223,19 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    fn start_paths(&self, [width, height]: [u32; 2], tile: &Tile, index: u32, paths: &mut Vec<Path>) {
+    #[inline(always)]
+    fn start_paths(&self, sample: &SampleNumbers, [width, height]: [u32; 2], tile: &Tile, paths: &mut Vec<Path>) {
         paths.clear();
+        let pixel_size = 1.0 / f64::from(height);
+        let middle = 0.5 * f64::from(width);
         for row in 0..tile.height {
             for column in 0..tile.width {
                 let (x, y) = (tile.x + column, tile.y + row);
                 let pixel = u64::from(y) * u64::from(width) + u64::from(x);
-                let sampler = PixelSampler::new(self.settings.sampler, self.settings.seed, pixel, index);
-                let [right, down, spare @ ..] = sampler.four(0);
-                let place_x = (f64::from(x) + right - 0.5 * f64::from(width)) / f64::from(height);
-                let place_y = 0.5 - (f64::from(y) + down) / f64::from(height);
+                let seed = sample.pixel(pixel);
+                let [right, down, spare @ ..] = sample.four(seed, 0);
+                let place_x = (f64::from(x) + right - middle) * pixel_size;
+                let place_y = 0.5 - (f64::from(y) + down) * pixel_size;
                 paths.push(Path {
                     ray: self.scene.camera.ray(place_x, place_y),
                     nearest: 0.0,
@@ -237,7 +244,7 @@ impl<'a> Integrator<'a> {
                     scatterings: 0,
                     events: 0,
                     pixel: (row * tile.width + column) as usize,
-                    sampler,
+                    seed,
                     spare,
                 });
             }
@@ -245,7 +252,8 @@ impl<'a> Integrator<'a> {
     }
 
     /// Sends each path to its next surface: it ends in light or in the dark, or waits at a material.
-    fn meet(&self, workspace: &mut Workspace, sums: &mut [Colour]) {
+    #[inline(always)]
+    fn meet(&self, sample: &SampleNumbers, workspace: &mut Workspace, sums: &mut [Colour]) {
         for vertices in &mut workspace.vertices {
             vertices.clear();
         }
@@ -266,10 +274,10 @@ impl<'a> Integrator<'a> {
                         self.add_light_met(light, choice, path, hit.distance, &mut sums[path.pixel]);
                         break;
                     }
-                    Meaning::Material { material, coverage } if is_covered(path, coverage) => {
+                    Meaning::Material { material, coverage } if is_covered(sample, path, coverage) => {
                         // A path that has scattered often enough may still go straight on.
                         if !self.is_spent(path) || self.materials[material].passes {
-                            let vertex = self.vertex(number, path, &hit, material);
+                            let vertex = self.vertex(sample, number, path, &hit, material);
                             workspace.vertices[material].push(vertex);
                         }
                         break;
@@ -286,8 +294,8 @@ impl<'a> Integrator<'a> {
         path.scatterings == self.settings.scatterings
     }
 
-    #[inline]
-    fn vertex(&self, number: usize, path: &Path, hit: &Hit, material: usize) -> Vertex {
+    #[inline(always)]
+    fn vertex(&self, sample: &SampleNumbers, number: usize, path: &Path, hit: &Hit, material: usize) -> Vertex {
         let frame = Frame::new(hit.normal, hit.tangent);
         Vertex {
             path: number,
@@ -297,7 +305,7 @@ impl<'a> Integrator<'a> {
             geometric_normal: hit.geometric_normal,
             outgoing: frame.to_local(&-path.ray.direction),
             texel: self.materials[material].texel(hit.uv),
-            numbers: path.numbers(),
+            numbers: path.numbers(sample),
         }
     }
 
@@ -320,6 +328,7 @@ impl<'a> Integrator<'a> {
     }
 
     /// Draws a direction towards a light from each vertex of a material, and counts what comes from there.
+    #[inline(always)]
     fn draw_lights(&self, material: usize, vertices: &[Vertex], workspace: &mut Workspace, sums: &mut [Colour]) {
         let last_choice = self.choice.last().map_or(0.0, |(_, sum)| *sum);
         if last_choice == 0.0 {
@@ -376,19 +385,30 @@ impl<'a> Integrator<'a> {
     }
 
     /// Draws from each vertex of a material the direction in which its path goes on.
+    #[inline(always)]
     fn draw_directions(&self, material: usize, vertices: &[Vertex], workspace: &mut Workspace) {
         let bound = &self.materials[material];
-        let Workspace { paths, tasks, incoming, outgoing, values, alive, .. } = workspace;
+        let Workspace { paths, tasks, incoming, outgoing, random, drawn, values, alive, .. } = workspace;
+        outgoing.clear();
+        random.clear();
+        for vertex in vertices {
+            outgoing.push(vertex.outgoing);
+            random.push(vertex.numbers.surface);
+        }
+        drawn.clear();
+        drawn.resize(vertices.len(), None);
+        bound.bsdf.sample_many(outgoing, random, drawn);
+
         tasks.clear();
         incoming.clear();
         outgoing.clear();
-        for (number, vertex) in vertices.iter().enumerate() {
+        for (number, (vertex, drawn)) in vertices.iter().zip(drawn).enumerate() {
             let path = &mut paths[vertex.path];
             let is_last = path.scatterings + 1 == self.settings.scatterings;
             if path.events == MOST_EVENTS || (is_last && !self.has_size && !bound.passes) {
                 continue;
             }
-            let Some(sample) = bound.bsdf.sample(&vertex.outgoing, vertex.numbers.surface) else { continue };
+            let Some(sample) = drawn else { continue };
             if sample.straight_through {
                 path.nearest = vertex.distance + self.start;
                 alive[vertex.path] = true;
@@ -435,8 +455,8 @@ impl<'a> Integrator<'a> {
 
 /// Whether a path meets what covers this share of a point.
 #[inline]
-fn is_covered(path: &Path, coverage: f64) -> bool {
-    coverage >= 1.0 || path.sampler.four(2 * path.events)[3] < coverage
+fn is_covered(sample: &SampleNumbers, path: &Path, coverage: f64) -> bool {
+    coverage >= 1.0 || sample.four(path.seed, 2 * path.events)[3] < coverage
 }
 
 /// Whether a direction lies on the same side of the interpolated surface as of the true one: else light would leak

@@ -81,12 +81,13 @@ impl Light {
             Self::Rectangle { shape, radiance } => {
                 let to_light = shape.at(random) - point;
                 let distance = to_light.norm();
-                let direction = to_light / distance;
+                let direction = to_light * (1.0 / distance);
                 let density = area_density(shape, &direction, distance);
+                let solid_angle = 1.0 / density;
                 (density > 0.0).then(|| LightSample {
                     direction,
                     distance,
-                    weight: radiance.map(|channel| channel / density),
+                    weight: radiance.map(|channel| channel * solid_angle),
                     density: Some(density),
                 })
             }

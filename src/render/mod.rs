@@ -18,6 +18,7 @@ mod material;
 mod mesh;
 mod picture;
 mod ray;
+mod rectangles;
 mod sampler;
 mod scene;
 mod shape;

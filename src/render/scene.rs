@@ -5,6 +5,7 @@ use super::light::Light;
 use super::material::{BoundMaterial, Material};
 use super::mesh::{Mesh, MeshPoint};
 use super::ray::{Frame, Hit, Ray, Vector};
+use super::rectangles::{LANES, RectangleBlock};
 use super::shape::{Rectangle, Sphere};
 use super::sheet::Sheet;
 
@@ -26,6 +27,8 @@ pub struct Scene {
     materials: Vec<Material>,
     spheres: Vec<(Sphere, usize)>,
     rectangles: Vec<(Rectangle, usize)>,
+    /// The same rectangles, for rays.
+    blocks: Vec<RectangleBlock>,
     meshes: Vec<(Mesh, usize)>,
     sheets: Vec<Sheet>,
     pub(super) surfaces: Vec<Surface>,
@@ -48,6 +51,7 @@ impl Scene {
             materials,
             spheres: Vec::new(),
             rectangles: Vec::new(),
+            blocks: Vec::new(),
             meshes: Vec::new(),
             sheets: Vec::new(),
             surfaces: Vec::new(),
@@ -77,7 +81,7 @@ impl Scene {
     #[must_use]
     pub fn with_rectangle(mut self, rectangle: Rectangle, material: usize) -> Self {
         let surface = self.add_surface(Surface::Material(material));
-        self.rectangles.push((rectangle, surface));
+        self.add_rectangle(rectangle, surface);
         self
     }
 
@@ -93,7 +97,7 @@ impl Scene {
     #[must_use]
     pub fn with_sheet(mut self, sheet: Sheet) -> Self {
         let surface = self.add_surface(Surface::Sheet(self.sheets.len()));
-        self.rectangles.push((sheet.rectangle, surface));
+        self.add_rectangle(sheet.rectangle, surface);
         self.sheets.push(sheet);
         self
     }
@@ -105,7 +109,7 @@ impl Scene {
         match &light {
             Light::Rectangle { shape, .. } => {
                 let surface = self.add_surface(Surface::Light(number));
-                self.rectangles.push((*shape, surface));
+                self.add_rectangle(*shape, surface);
             }
             Light::Sphere { shape, .. } => {
                 let surface = self.add_surface(Surface::Light(number));
@@ -115,6 +119,17 @@ impl Scene {
         }
         self.lights.push(light);
         self
+    }
+
+    fn add_rectangle(&mut self, rectangle: Rectangle, surface: usize) {
+        let lane = self.rectangles.len() % LANES;
+        if lane == 0 {
+            self.blocks.push(RectangleBlock::default());
+        }
+        if let Some(block) = self.blocks.last_mut() {
+            block.set(lane, &rectangle);
+        }
+        self.rectangles.push((rectangle, surface));
     }
 
     fn add_surface(&mut self, surface: Surface) -> usize {
@@ -152,12 +167,19 @@ impl Scene {
     }
 
     /// The first thing that the ray meets beyond `nearest`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn first_hit(&self, ray: &Ray, nearest: f64) -> Option<Hit> {
         let (mut farthest, mut met) = (f64::INFINITY, None);
-        for (number, (rectangle, _)) in self.rectangles.iter().enumerate() {
-            if let Some((distance, uv)) = rectangle.distance(ray, nearest, farthest) {
-                (farthest, met) = (distance, Some(Met::Rectangle(number, uv)));
+        for (block, first) in self.blocks.iter().zip((0..).step_by(LANES)) {
+            let hits = block.meet(ray, nearest, farthest);
+            let mut best = None;
+            for (lane, distance) in hits.distance.into_iter().enumerate() {
+                if distance < farthest {
+                    (farthest, best) = (distance, Some(lane));
+                }
+            }
+            if let Some(lane) = best {
+                met = Some(Met::Rectangle(first + lane, hits.place(lane)));
             }
         }
         for (number, (sphere, _)) in self.spheres.iter().enumerate() {
@@ -188,14 +210,23 @@ impl Scene {
 
     /// Share of light that passes along a ray between two distances: 0 behind anything, except where a material lets
     /// light straight through.
-    #[inline]
+    #[inline(always)]
     pub(super) fn passed(&self, materials: &[BoundMaterial<'_>], ray: &Ray, nearest: f64, farthest: f64) -> f64 {
         let mut share = 1.0;
-        for (rectangle, surface) in &self.rectangles {
-            if let Some((distance, uv)) = rectangle.distance(ray, nearest, farthest) {
-                share *= self.share_through(materials, *surface, ray, || rectangle.hit(distance, uv, *surface));
-                if share == 0.0 {
-                    return 0.0;
+        for (block, rectangles) in self.blocks.iter().zip(self.rectangles.chunks(LANES)) {
+            let hits = block.meet(ray, nearest, farthest);
+            // Most rays towards a light meet nothing.
+            if hits.distance.iter().all(|distance| *distance == f64::INFINITY) {
+                continue;
+            }
+            for (lane, (rectangle, surface)) in rectangles.iter().enumerate() {
+                let distance = hits.distance[lane];
+                if distance < f64::INFINITY {
+                    let hit = || rectangle.hit(distance, hits.place(lane), *surface);
+                    share *= self.share_through(materials, *surface, ray, hit);
+                    if share == 0.0 {
+                        return 0.0;
+                    }
                 }
             }
         }

@@ -96,8 +96,6 @@ pub struct Rectangle {
     /// Edges over their squared lengths: their products with a point give its place.
     place_u: Vector,
     place_v: Vector,
-    /// Product of the normal with any point of the plane.
-    offset: f64,
     area: f64,
 }
 
@@ -115,7 +113,6 @@ impl Rectangle {
             tangent: edge_u.normalize(),
             place_u: edge_u / edge_u.norm_squared(),
             place_v: edge_v / edge_v.norm_squared(),
-            offset: normal.dot(&corner),
             area,
         })
     }
@@ -136,17 +133,10 @@ impl Rectangle {
         [a, b, b + self.edge_v, a + self.edge_v]
     }
 
-    /// Distance to the ray's point on it between two distances, and its place along both edges.
-    #[inline]
-    pub fn distance(&self, ray: &Ray, nearest: f64, farthest: f64) -> Option<(f64, [f64; 2])> {
-        // A ray along the plane divides by 0: the distance is infinite or no number, and passes no comparison.
-        let distance = (self.offset - self.normal.dot(&ray.origin)) / self.normal.dot(&ray.direction);
-        if !(distance > nearest && distance < farthest) {
-            return None;
-        }
-        let from_corner = ray.at(distance) - self.corner;
-        let (u, v) = (self.place_u.dot(&from_corner), self.place_v.dot(&from_corner));
-        ((0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v)).then_some((distance, [u, v]))
+    /// Three linear functions of a point, each a vector to multiply it with and a number to take away: its height above
+    /// the plane, and its place along both edges.
+    pub(super) fn functions(&self) -> [(Vector, f64); 3] {
+        [self.normal, self.place_u, self.place_v].map(|vector| (vector, vector.dot(&self.corner)))
     }
 
     /// What a ray meets at this distance and place.

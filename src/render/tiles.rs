@@ -13,6 +13,7 @@ use super::checkpoint::{TileFile, Tiles};
 use super::error::RenderError;
 use super::integrator::{Integrator, Settings, Tile, Workspace};
 use super::picture::Picture;
+use super::ray::Colour;
 use super::scene::Scene;
 
 /// Size of a tile: one sample of each of its pixels goes step by step together, enough to fill lanes, few enough to stay
@@ -143,11 +144,13 @@ fn render_tile(
 ) -> Result<Option<Vec<[f32; 3]>>, RenderError> {
     let mut workspace = Workspace::default();
     let mut sums = vec![[0.0; 3]; (tile.width * tile.height) as usize];
+    let arch = pulp::Arch::new();
     for index in 0..resolution.samples {
         if control.interrupt.load(Ordering::Relaxed) {
             return Ok(None);
         }
-        integrator.add_sample([resolution.width, resolution.height], tile, index, &mut workspace, &mut sums);
+        let size = [resolution.width, resolution.height];
+        arch.dispatch(Sample { integrator, size, tile, index, workspace: &mut workspace, sums: &mut sums });
     }
     let scale = 1.0 / f64::from(resolution.samples);
     #[expect(clippy::cast_possible_truncation, reason = "a picture holds 32-bit numbers")]
@@ -159,6 +162,25 @@ fn render_tile(
             Err(RenderError::NotFinite { x: tile.x + place % tile.width, y: tile.y + place / tile.width })
         }
         None => Ok(Some(pixels)),
+    }
+}
+
+/// One sample of each pixel of a tile, in the form in which it is compiled once for each instruction set.
+struct Sample<'a> {
+    integrator: &'a Integrator<'a>,
+    size: [u32; 2],
+    tile: &'a Tile,
+    index: u32,
+    workspace: &'a mut Workspace,
+    sums: &'a mut [Colour],
+}
+
+impl pulp::NullaryFnOnce for Sample<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.integrator.add_sample(self.size, self.tile, self.index, self.workspace, self.sums);
     }
 }
 

@@ -28,7 +28,7 @@ use super::directions::{RGB_NM, any_direction, spherical, values};
 
 /// How finely a viewer is looked at.
 #[derive(Clone, Copy)]
-struct Effort {
+pub(super) struct Effort {
     /// Cells between the poles; around there are twice as many.
     polar: usize,
     /// Cells between the poles for the albedo, where a point costs an evaluation.
@@ -39,7 +39,7 @@ struct Effort {
 }
 
 /// Cells of 4.5°, a third of the width of the lobes that are tested with it.
-const QUICK: Effort = Effort { polar: 40, albedo_polar: 30, albedo_depth: 0, draws: 30_000 };
+pub(super) const QUICK: Effort = Effort { polar: 40, albedo_polar: 30, albedo_depth: 0, draws: 30_000 };
 
 /// Cells of 2°. The narrowest lobes that are looked at, mirrored at 88° by a roughness of 0.05, are narrower around the
 /// normal; their middle lies on a cell's edge, where the cell's points see them and cut it up.
@@ -129,7 +129,7 @@ fn integrate_density(bsdf: &dyn Bsdf, outgoing: &Direction, effort: Effort) -> V
 }
 
 /// ∫ f |n·ωi| dωi of each channel.
-fn integrate_albedo(bsdf: &dyn Bsdf, channels: usize, outgoing: &Direction, effort: Effort) -> Vec<f64> {
+pub(super) fn integrate_albedo(bsdf: &dyn Bsdf, channels: usize, outgoing: &Direction, effort: Effort) -> Vec<f64> {
     let scattered = |incoming: &Direction, values: &mut [f64]| {
         bsdf.evaluate(incoming, outgoing, values);
         values.iter_mut().for_each(|value| *value *= incoming.z.abs());
@@ -257,11 +257,12 @@ fn chi_squared(cells: &[f64], counts: &[f64], draws: f64) -> f64 {
 }
 
 /// A model with values for its parameters, and the viewers from whom it is looked at.
-struct Subject {
-    name: String,
-    model: Box<dyn Model>,
-    values: Vec<f64>,
-    viewers: Vec<(f64, f64)>,
+pub(super) struct Subject {
+    pub(super) name: String,
+    pub(super) model: Box<dyn Model>,
+    pub(super) values: Vec<f64>,
+    /// Inclination and azimuth, degrees.
+    pub(super) viewers: Vec<(f64, f64)>,
 }
 
 fn subject(name: &str, model: impl Model + 'static, changes: &[(&str, f64)], viewers: &[(f64, f64)]) -> Subject {
@@ -284,15 +285,22 @@ fn look_at_all(subjects: &[Subject], effort: Effort) -> Vec<Finding> {
 }
 
 /// Allowed error of an albedo by Gauss's rule, as a share of it: what halving the cells changes at most.
-const QUADRATURE: f64 = 1e-3;
+pub(super) const QUADRATURE: f64 = 1e-3;
+
+/// The probability at which each of so many tests must be held for that of all.
+fn of_one(of_all: f64, count: usize) -> f64 {
+    1.0 - (1.0 - of_all).powf(1.0 / count as f64)
+}
+
+/// How many standard errors of each of so many numbers leave as much outside as three of a single one, 0.0027.
+pub(super) fn standard_errors(count: usize) -> f64 {
+    Normal::standard().inverse_cdf(1.0 - 0.5 * of_one(0.0027, count))
+}
 
 /// All that is asked of the findings; for so many of them at once each probability is one over their number (Šidák 1967).
 fn judge(findings: &[Finding]) {
-    let of_one = |of_all: f64, count: usize| 1.0 - (1.0 - of_all).powf(1.0 / count as f64);
     let least_p = of_one(1e-3, findings.len());
-    // Three standard errors leave 0.0027 outside.
-    let albedos = findings.iter().map(|finding| finding.albedos.len()).sum();
-    let errors = Normal::standard().inverse_cdf(1.0 - 0.5 * of_one(0.0027, albedos));
+    let errors = standard_errors(findings.iter().map(|finding| finding.albedos.len()).sum());
     let mut wrong = Vec::new();
     for finding in findings {
         let mut problems = Vec::new();
@@ -337,7 +345,7 @@ const LAMELLA: &str =
     "layers = [{ name = \"cortex\", material = \"keratin\", thickness_nm = 330 }]\nsubstrate = \"bird_melanin\"";
 
 /// Each model once or more, with lobes wide enough for quick cells.
-fn subjects() -> Vec<Subject> {
+pub(super) fn subjects() -> Vec<Subject> {
     let lambertian = Lambertian::new(&LambertianDesign::default(), &RGB_NM).unwrap();
     let pigmented = PigmentedBase::new(&PigmentedBaseDesign::default(), &RGB_NM).unwrap();
     let unknown_angle: FilmAtUnknownAngleDesign =

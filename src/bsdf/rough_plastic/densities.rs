@@ -1,11 +1,11 @@
-//! Densities of rough plastic for many pairs of directions at a time, in the manner of [`super::batch`].
+//! Draws and densities of rough plastic for many pairs of directions at a time, in the manner of [`super::batch`].
 
 use std::f64::consts::{FRAC_1_PI, PI};
 
 use super::BoundRoughPlastic;
 use super::batch::{BLOCK, CELL_COUNT, DirectionTable};
-use crate::bsdf::Direction;
 use crate::bsdf::coat_sampling::CoatSampler;
+use crate::bsdf::{Direction, Sample};
 use crate::optics::elementary::exp_of_negative;
 
 /// [`crate::bsdf::Bsdf::density_many`] of a rough plastic.
@@ -20,6 +20,37 @@ pub(super) fn fill(
     let sampler = plastic.sampler();
     let inverse_alpha_squared = 1.0 / (plastic.roughness * plastic.roughness);
     pulp::Arch::new().dispatch(Pairs { sampler, table, inverse_alpha_squared, incoming, outgoing, densities });
+}
+
+/// [`crate::bsdf::Bsdf::sample_many`] of a rough plastic: directions one by one, their densities together.
+pub(super) fn sample(
+    plastic: &BoundRoughPlastic,
+    table: &DirectionTable,
+    outgoing: &[Direction],
+    random: &[[f64; 3]],
+    samples: &mut [Option<Sample>],
+) {
+    assert!(outgoing.len() == random.len() && outgoing.len() == samples.len(), "one sample a viewer");
+    let sampler = plastic.sampler();
+    let blocks = outgoing.chunks(BLOCK).zip(random.chunks(BLOCK));
+    for ((outgoing, random), samples) in blocks.zip(samples.chunks_mut(BLOCK)) {
+        // What is not drawn keeps the density of a direction from below, which is none.
+        let (mut incoming, mut densities) = ([-Direction::z(); BLOCK], [0.0; BLOCK]);
+        for ((sample, incoming), (outgoing, random)) in
+            samples.iter_mut().zip(&mut incoming).zip(outgoing.iter().zip(random))
+        {
+            let drawn = sampler.direction(outgoing, *random);
+            *sample = drawn.map(|direction| Sample::scattered(direction, 0.0));
+            *incoming = drawn.unwrap_or(*incoming);
+        }
+        let count = outgoing.len();
+        fill(plastic, table, &incoming[..count], outgoing, &mut densities[..count]);
+        for (sample, density) in samples.iter_mut().zip(densities) {
+            if let Some(sample) = sample {
+                sample.density = density;
+            }
+        }
+    }
 }
 
 /// The loop over blocks, in the form in which it is compiled once for each instruction set.

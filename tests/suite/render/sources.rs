@@ -3,10 +3,16 @@
 use std::f64::consts::{PI, TAU};
 
 use barbule::bsdf::cylinder::CylinderModel;
-use barbule::bsdf::{Direction, Feather, MicrofacetInterface, Model, RoughPlastic};
+use barbule::bsdf::{
+    BarbuleDesign, CoatedBase, Direction, Feather, FeatherDesign, MicrofacetInterface, Model, PICTURE_TOLERANCE,
+    RoughPlastic,
+};
 use barbule::render::{EnvironmentMap, Light, Material, Rectangle, Scene, Settings, Sphere, Texture, Vector};
 
-use super::super::directions::{RGB_NM, values};
+use rayon::prelude::*;
+
+use super::super::directions::{RGB_NM, spherical, values};
+use super::super::sampling::{QUADRATURE, QUICK, Subject, integrate_albedo, standard_errors, subjects};
 use super::{
     DIRECT, LAMBERT, albedo_of_viewer, assert_estimates, at_origin, estimate, ground, lambertian, material, patch,
     picture, resolution,
@@ -162,6 +168,66 @@ fn a_furnace_shows_each_models_albedo() {
     assert_furnace(interface, &[("roughness", 0.3)], 30.0, "rough interface");
     let fibre = CylinderModel::new(&Default::default(), &RGB_NM).unwrap();
     assert_furnace(fibre, &[("sigma_a", 0.4), ("beta_m", 0.3), ("beta_n", 0.3)], 20.0, "absorbing fibre");
+}
+
+/// A diffuse base that absorbs nothing under a clear film, and a feather whose barbules are films over melanin.
+#[test]
+fn a_furnace_shows_the_albedo_of_films() {
+    let film = "substrate = \"keratin\"\nlayers = [{ name = \"film\", material = \"chitin\", thickness_nm = 300 }]";
+    let white = [("roughness", 0.3), ("diffuse_albedo", 1.0)];
+    for inclination_deg in [20.0, 70.0] {
+        let coated = CoatedBase::new(&toml::from_str(film).unwrap(), &RGB_NM).unwrap();
+        let (sin, cos) = f64::to_radians(inclination_deg).sin_cos();
+        let viewer = Direction::new(sin, 0.0, cos);
+        for (albedo, error) in albedo_of_viewer(&coated, &values(&coated, &white), &viewer) {
+            // The transmittance is what the tabulated lobe leaves, good to 1e-3.
+            assert!((albedo - 1.0).abs() < 1e-3 + error, "the base sends back {albedo} of the light");
+        }
+        assert_furnace(coated, &white, inclination_deg, "white coated base");
+    }
+    let lamella =
+        "layers = [{ name = \"cortex\", material = \"keratin\", thickness_nm = 330 }]\nsubstrate = \"bird_melanin\"";
+    let barbule = BarbuleDesign::Lamella(Box::new(toml::from_str(lamella).unwrap()));
+    for inclination_deg in [20.0, 60.0] {
+        let feather = Feather::new(&FeatherDesign { barbule: barbule.clone(), ..Default::default() }, &RGB_NM).unwrap();
+        assert_furnace(feather, &[("barbule.roughness", 0.3)], inclination_deg, "feather of lamellae");
+    }
+}
+
+/// Every model, each viewer's picture of a furnace against Gauss's rule.
+#[test]
+fn a_furnace_shows_every_models_albedo() {
+    let most_viewers = subjects().iter().map(|subject| subject.viewers.len()).max().unwrap();
+    let count: usize = subjects().iter().map(|subject| subject.viewers.len()).sum();
+    let errors = standard_errors(3 * count);
+    let mut wrong = Vec::new();
+    for number in 0..most_viewers {
+        let wrong_now: Vec<String> = subjects()
+            .into_par_iter()
+            .filter_map(|Subject { name, model, values, viewers }| {
+                let (theta_deg, phi_deg) = *viewers.get(number)?;
+                let viewer = spherical(theta_deg.to_radians(), phi_deg.to_radians());
+                let bound = model.bind(&values);
+                let through = bound.straight_through(&viewer);
+                let albedos = integrate_albedo(bound.as_ref(), 3, &viewer, QUICK);
+                drop(bound);
+                let scene = Scene::new(at_origin(viewer), vec![Material::plain(model, values).unwrap()])
+                    .with_rectangle(ground(), 0)
+                    .with_light(Light::Constant { radiance: [1.0; 3] });
+                let seen = picture(&scene, resolution(32, 32, 64), DIRECT);
+                estimate(&seen).into_iter().zip(albedos).find_map(|((mean, error), albedo)| {
+                    let expected = albedo + through;
+                    // Where a picture tabulates, it is good to PICTURE_TOLERANCE.
+                    let slack = errors * error + 1e-6 + (QUADRATURE + PICTURE_TOLERANCE) * expected;
+                    ((mean - expected).abs() > slack).then(|| {
+                        format!("{name}, viewer at {theta_deg}°, {phi_deg}°: {mean} ± {error}, expected {expected}")
+                    })
+                })
+            })
+            .collect();
+        wrong.extend(wrong_now);
+    }
+    assert!(wrong.is_empty(), "{} of {count} viewers:\n{}", wrong.len(), wrong.join("\n"));
 }
 
 /// What absorbs nothing is as bright as the furnace.
