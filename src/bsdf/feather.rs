@@ -45,7 +45,7 @@ use super::cylinder::{CylinderDesign, CylinderModel, FilmedCylinderDesign, Filme
 use super::oriented::Tangent;
 use super::sampling::Choice;
 use super::spongy_barb::SpongyBarbModel;
-use super::{Bsdf, CoatedBase, Design, Direction, Model, ModelError, Sample};
+use super::{Bsdf, ChannelMix, CoatedBase, Design, Direction, Model, ModelError, Sample};
 use crate::parameter::{Parameter, Spread};
 
 /// Mean width and spacing of barbs, µm (the first thesis, section 3.1, which calls the width a radius; Pap et al. 2015).
@@ -215,34 +215,45 @@ impl Model for Feather {
     }
 
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
-        self.bind_parts(values, |model, values| model.bind(values))
+        let [own, barb, barbule] = self.of_parts(values);
+        Box::new(self.bound(own, self.barb.bind(barb), self.barbule.bind(barbule)))
     }
 
-    fn bind_for_picture(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
-        self.bind_parts(values, |model, values| model.bind_for_picture(values))
+    fn bind_for_picture(&self, shades: &[Vec<f64>], mix: Option<&ChannelMix>) -> Vec<Box<dyn Bsdf + '_>> {
+        let part = |number: usize| -> Vec<Vec<f64>> {
+            shades.iter().map(|values| self.of_parts(values)[number].to_vec()).collect()
+        };
+        let barbs = self.barb.bind_for_picture(&part(1), mix);
+        let barbules = self.barbule.bind_for_picture(&part(2), mix);
+        let parts = shades.iter().zip(barbs).zip(barbules);
+        let bound = parts.map(|((values, barb), barbule)| -> Box<dyn Bsdf + '_> {
+            Box::new(self.bound(self.of_parts(values)[0], barb, barbule))
+        });
+        bound.collect()
     }
 }
 
 impl Feather {
-    /// The feather with its parts bound as `bind` does it.
-    fn bind_parts<'a>(
-        &'a self,
-        values: &[f64],
-        bind: impl Fn(&'a dyn Model, &[f64]) -> Box<dyn Bsdf + 'a>,
-    ) -> Box<dyn Bsdf + 'a> {
+    /// The values of the feather's own parameters, of its barb's and of its barbules'.
+    fn of_parts<'v>(&self, values: &'v [f64]) -> [&'v [f64]; 3] {
         let (own, parts) = values.split_at(if self.barbules_are_fibres { 3 } else { 2 });
         let (barb, barbule) = parts.split_at(self.barb.parameters().len());
+        [own, barb, barbule]
+    }
+
+    /// The feather of these parts.
+    fn bound<'a>(&self, own: &[f64], barb: Box<dyn Bsdf + 'a>, barbule: Box<dyn Bsdf + 'a>) -> BoundFeather<'a> {
         let (barb_share, through_share) = (own[0], own[1]);
         let barbule_share = 0.5 * (1.0 - barb_share - through_share);
-        Box::new(BoundFeather {
+        BoundFeather {
             shares: Shares { barb: barb_share, proximal: barbule_share, distal: barbule_share, through: through_share },
-            barb: bind(self.barb.as_ref(), barb),
-            barbule: bind(self.barbule.as_ref(), barbule),
+            barb,
+            barbule,
             // Absent where the barbules' model knows no direction.
             directions: own
                 .get(2)
                 .map(|&angle| Barbules { proximal: Tangent::at_degrees(angle), distal: Tangent::at_degrees(-angle) }),
-        })
+        }
     }
 }
 

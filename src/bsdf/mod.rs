@@ -7,6 +7,7 @@
 
 mod absorbers;
 mod beckmann_lobe;
+mod channel_mix;
 mod channel_parameters;
 mod coat_sampling;
 mod coated_base;
@@ -25,6 +26,8 @@ mod rough_plastic;
 mod sampling;
 pub mod spongy_barb;
 
+pub use channel_mix::ChannelMix;
+pub(crate) use channel_mix::PICTURE_CHANNELS;
 pub(crate) use channel_parameters::channel_suffix;
 pub use coated_base::{
     CoatedBase, Description, Design, DesignEntry, DesignLayer, DesignPeriod, MaterialChoice, OwnMaterial,
@@ -66,10 +69,11 @@ pub trait Model: Send + Sync + std::fmt::Debug {
     /// Values inside the declared bounds always give finite results.
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_>;
 
-    /// [`Model::bind`] for a picture: millions of pairs of directions, three channels, values to [`PICTURE_TOLERANCE`]. A model
-    /// may then tabulate what it would else compute anew.
-    fn bind_for_picture(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
-        self.bind(values)
+    /// [`Model::bind`] for a picture: millions of pairs of directions, for each of several lists of values, which share what
+    /// they can. The channels are the model's own, or those that a mix makes of them. A model may tabulate what it would
+    /// else compute anew: alone to [`PICTURE_TOLERANCE`], several of them as its documentation says.
+    fn bind_for_picture(&self, shades: &[Vec<f64>], mix: Option<&ChannelMix>) -> Vec<Box<dyn Bsdf + '_>> {
+        shades.iter().map(|values| channel_mix::mixed(self.bind(values), mix)).collect()
     }
 
     /// Whether these values can be bound: one for each parameter, each a number inside its bounds.

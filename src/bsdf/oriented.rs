@@ -10,7 +10,7 @@
 //! f(ωi, ωo) = `f_model(R ωi, R ωo)`, R the rotation by −ψ about the normal, which takes the tangent to x. Turned by 180° a
 //! fibre looks the same, so a fit should bound ψ to half a turn; elsewhere it finds each minimum twice.
 
-use super::{Bsdf, Direction, Model, Sample};
+use super::{Bsdf, ChannelMix, Direction, Model, Sample};
 use crate::parameter::{Parameter, Spread};
 
 /// A model whose tangent lies at an azimuth of its own: `tangent_deg`.
@@ -55,10 +55,14 @@ impl Model for Oriented {
         Box::new(BoundOriented { bsdf: self.model.bind(values), tangent: Tangent::at_degrees(tangent_deg[0]) })
     }
 
-    fn bind_for_picture(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
-        let (values, tangent_deg) = values.split_at(self.parameters.len() - 1);
-        let tangent = Tangent::at_degrees(tangent_deg[0]);
-        Box::new(BoundOriented { bsdf: self.model.bind_for_picture(values), tangent })
+    fn bind_for_picture(&self, shades: &[Vec<f64>], mix: Option<&ChannelMix>) -> Vec<Box<dyn Bsdf + '_>> {
+        let split = self.parameters.len() - 1;
+        let inner: Vec<Vec<f64>> = shades.iter().map(|values| values[..split].to_vec()).collect();
+        let bound = self.model.bind_for_picture(&inner, mix).into_iter().zip(shades);
+        let turned = bound.map(|(bsdf, values)| -> Box<dyn Bsdf + '_> {
+            Box::new(BoundOriented { bsdf, tangent: Tangent::at_degrees(values[split]) })
+        });
+        turned.collect()
     }
 }
 

@@ -19,9 +19,9 @@ use std::f64::consts::PI;
 
 use super::cylinder::{
     AzimuthalSource, Cylinder, CylinderDesign, CylinderLobes, CylinderModel, FibreAngles, FibreSampler, LazySampler,
-    over_cosine,
+    PictureFibre, for_picture, over_cosine,
 };
-use super::{Bsdf, Direction, Model, ModelError, Sample};
+use super::{Bsdf, ChannelMix, Direction, Model, ModelError, Sample};
 use crate::parameter::{Parameter, Spread};
 
 /// A band that cannot be.
@@ -217,9 +217,22 @@ impl Model for SpongyBarbModel {
     }
 
     fn bind(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
+        Box::new(self.barb(values))
+    }
+
+    fn bind_for_picture(&self, shades: &[Vec<f64>], mix: Option<&ChannelMix>) -> Vec<Box<dyn Bsdf + '_>> {
+        let barbs: Vec<SpongyBarb> = shades.iter().map(|values| self.barb(values)).collect();
+        let fibre = |barb: &SpongyBarb| PictureFibre { cylinder: barb.cylinder.clone(), sponge: barb.shares.clone() };
+        let fibres: Vec<PictureFibre> = barbs.iter().map(fibre).collect();
+        for_picture(&fibres, mix, |number| Box::new(barbs[number].clone()))
+    }
+}
+
+impl SpongyBarbModel {
+    fn barb(&self, values: &[f64]) -> SpongyBarb {
         let (cylinder, band) = values.split_at(self.cylinder.parameters().len());
         let band = SpongeBand { strength: band[0], peak_nm: band[1], width_nm: band[2] };
-        Box::new(SpongyBarb::from_checked(self.cylinder.cylinder(cylinder), &self.wavelengths_nm, band))
+        SpongyBarb::from_checked(self.cylinder.cylinder(cylinder), &self.wavelengths_nm, band)
     }
 }
 

@@ -8,8 +8,8 @@ use std::time::Instant;
 use anyhow::{Context, Result};
 use barbule::render::{self, Checkpoint, Control, RenderError};
 use barbule::report::write_file;
-use barbule::scene::{CheckedScene, SceneFile};
-use clap::Args;
+use barbule::scene::{CheckedScene, SceneFile, SpeciesFile, View, studio};
+use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::Ending;
@@ -20,11 +20,15 @@ use super::output::{check_writable, print};
 /// Ctrl-C stops; with --checkpoint the tiles that are done are kept, and the same command goes on from there.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Example:\n  barbule render fits/scene-sphere\n  barbule render my-scene.json --samples 256 --out pictures"
+    after_help = "Example:\n  barbule render fits/scene-sphere\n  barbule render my-scene.json --samples 256 --out pictures\n  barbule render steller-jay-tail --view flat"
 )]
 pub(super) struct Render {
-    /// The scene: its JSON file, or a folder with a scene.json in it.
+    /// The scene: its JSON file, or a folder with a scene.json in it. With --view a kept species: its JSON file, or its name in
+    /// fits/species.
     scene: PathBuf,
+    /// Show a kept species on a table; the pictures are named after the view and after how the entry's values were found.
+    #[arg(long, value_enum)]
+    view: Option<SpeciesView>,
     /// Folder of render.png and render.exr [default: reports/<scene's name>].
     #[arg(long)]
     out: Option<PathBuf>,
@@ -51,9 +55,38 @@ fn interrupt() {
     }
 }
 
+/// How a kept species is looked at.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SpeciesView {
+    /// From straight above, whole.
+    Flat,
+    /// From the side and 30° above the table, whole.
+    Angle,
+    /// From straight above, each barb told apart.
+    CloseUp,
+}
+
 impl Render {
+    /// The scene, the file that it was made of, and the name of its pictures.
+    fn file(&self) -> Result<(SceneFile, PathBuf, String)> {
+        let Some(view) = self.view else {
+            let (file, path) = SceneFile::read(&self.scene)?;
+            return Ok((file, path, "render".to_owned()));
+        };
+        let path = SpeciesFile::find(&self.scene);
+        let entry = SpeciesFile::read(&path)?;
+        let (view, name) = match view {
+            SpeciesView::Flat => (View::Flat, "flat"),
+            SpeciesView::Angle => (View::Angle, "angle"),
+            SpeciesView::CloseUp => (View::CloseUp, "close-up"),
+        };
+        let file = studio(&entry, &path, view).with_context(|| format!("{}: geometry", path.display()))?;
+        let stem = format!("{}-{name}", entry.status.word());
+        Ok((file, path, stem))
+    }
+
     pub(super) fn run(self) -> Result<Ending> {
-        let (mut file, path) = SceneFile::read(&self.scene)?;
+        let (mut file, path, stem) = self.file()?;
         file.image.samples = self.samples.unwrap_or(file.image.samples);
         file.image.seed = self.seed.unwrap_or(file.image.seed);
         // A feather's map is made by all threads, so that they come first.
@@ -89,7 +122,7 @@ impl Render {
         };
 
         let seconds = started.elapsed().as_secs_f64();
-        let (png, exr) = (folder.join("render.png"), folder.join("render.exr"));
+        let (png, exr) = (folder.join(format!("{stem}.png")), folder.join(format!("{stem}.exr")));
         write_file(&png, &picture.to_png(&checked.tone).context("the picture cannot be written as a PNG")?)?;
         write_file(&exr, &picture.to_exr().context("the picture cannot be written as an EXR")?)?;
         if let Some(checkpoint) = checkpoint {

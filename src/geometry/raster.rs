@@ -11,6 +11,7 @@ use super::file::BetweenBarbs;
 use super::grid::Grid;
 use super::map::{NOTHING, TexelClass, coded};
 use super::nearest_strand::{BAND_ROWS, Groups, Place, Segment, Strands};
+use super::place::{Ground, VanePlace};
 use super::polygon;
 use super::{FeatherMap, GeometryError};
 
@@ -37,20 +38,34 @@ impl FeatherMap {
     /// # Errors
     /// A resolution that makes no map, or one that is too large.
     pub fn of(feather: &Feather, pixels_per_mm: Option<f64>) -> Result<Self, GeometryError> {
-        Ok(draw(feather, &Grid::new(feather.bounds_mm(), pixels_per_mm)?))
+        let grid = Grid::new(feather.bounds_mm(), pixels_per_mm)?;
+        Ok(draw(feather, &grid, Vec::new()).0)
+    }
+
+    /// The same map, and where each texel of a barb or its barbules lies on its vane, in rows from the top.
+    ///
+    /// # Errors
+    /// As [`FeatherMap::of`].
+    pub fn with_places(
+        feather: &Feather,
+        pixels_per_mm: Option<f64>,
+    ) -> Result<(Self, Vec<Option<VanePlace>>), GeometryError> {
+        let grid = Grid::new(feather.bounds_mm(), pixels_per_mm)?;
+        Ok(draw(feather, &grid, Ground::of_all(feather)))
     }
 }
 
-/// Draws a feather on a grid, in bands of rows that are independent of each other.
-pub(super) fn draw(feather: &Feather, grid: &Grid) -> FeatherMap {
-    let picture = Picture::new(feather, grid);
+/// Draws a feather on a grid, in bands of rows that are independent of each other. Places are told where the grounds of
+/// barbs are given.
+fn draw(feather: &Feather, grid: &Grid, grounds: Vec<Ground>) -> (FeatherMap, Vec<Option<VanePlace>>) {
+    let picture = Picture::new(feather, grid, grounds);
     let (width, height) = (grid.width as usize, grid.height as usize);
     let shaft_reach = 1.0 + 0.55 * picture.widest_shaft_mm() * grid.pixels_per_mm;
     let shaft = Strands::new(width, height, picture.shaft_segments(shaft_reach), shaft_reach);
     // Half the way between two barbs is farthest, unless they spread.
     let barb_reach = 1.0 + 0.75 * picture.widest_pitch_mm() * grid.pixels_per_mm;
     let barbs = Strands::new(width, height, picture.barb_segments(barb_reach), barb_reach);
-    let texels: Vec<Vec<[u16; 4]>> = (0..height.div_ceil(BAND_ROWS))
+    let bands: Vec<Vec<([u16; 4], Option<VanePlace>)>> = (0..height.div_ceil(BAND_ROWS))
         .into_par_iter()
         .map(|band| {
             let first = band * BAND_ROWS * width;
@@ -61,7 +76,8 @@ pub(super) fn draw(feather: &Feather, grid: &Grid) -> FeatherMap {
             texels.zip(places).map(|(index, (shaft, barb))| picture.texel(index, shaft, barb)).collect()
         })
         .collect();
-    FeatherMap::from_texels(grid.width, grid.pixels_per_mm, texels.concat())
+    let (texels, places) = bands.into_iter().flatten().unzip();
+    (FeatherMap::from_texels(grid.width, grid.pixels_per_mm, texels), places)
 }
 
 /// A feather over a grid, with what is known before any tangent is looked up.
@@ -70,6 +86,8 @@ struct Picture<'a> {
     grid: &'a Grid,
     /// Barbs of both vanes, the left one's first.
     barbs: Vec<&'a Barb>,
+    /// Where they stand on the rachis; empty where nobody asks.
+    grounds: Vec<Ground>,
     /// Share of each texel that the shaft covers, 0 to 255.
     shaft: Vec<u8>,
     /// Share that shaft or closed vane covers.
@@ -79,7 +97,7 @@ struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    fn new(feather: &'a Feather, grid: &'a Grid) -> Self {
+    fn new(feather: &'a Feather, grid: &'a Grid, grounds: Vec<Ground>) -> Self {
         let tolerance_mm = POLYGON_TEXELS / grid.pixels_per_mm;
         let shaft = polygon::shaft(&feather.shaft, tolerance_mm);
         let vanes = feather.vanes.each_ref().map(|vane| polygon::vane(vane, &feather.shaft, tolerance_mm));
@@ -91,6 +109,7 @@ impl<'a> Picture<'a> {
             feather,
             grid,
             barbs: feather.vanes.iter().flat_map(|vane| &vane.barbs).collect(),
+            grounds,
             shaft: union(grid, &[shaft]),
             whole: union(grid, &areas),
             in_vane: vanes.map(|vane| inside(grid, vane)),
@@ -148,8 +167,8 @@ impl<'a> Picture<'a> {
             .collect()
     }
 
-    /// The texel whose nearest places on shaft and barbs are known, where it may need them.
-    fn texel(&self, index: usize, shaft: Option<Place>, barb: Option<Place>) -> [u16; 4] {
+    /// The texel whose nearest places on shaft and barbs are known, where it may need them; and where it lies on its vane.
+    fn texel(&self, index: usize, shaft: Option<Place>, barb: Option<Place>) -> ([u16; 4], Option<VanePlace>) {
         let width = self.grid.width as usize;
         let centre = self.grid.centre_mm(index % width, index / width);
         let barb = barb.map(|place| {
@@ -169,12 +188,15 @@ impl<'a> Picture<'a> {
         match (shaft, barb) {
             (Some(place), _) if of_shaft >= of_barbs => {
                 let curve = &self.feather.shaft.curve;
-                coded(TexelClass::Shaft, curve.tangent(curve.nearest(centre, place.t)), of_shaft + of_barbs)
+                (coded(TexelClass::Shaft, curve.tangent(curve.nearest(centre, place.t)), of_shaft + of_barbs), None)
             }
             (_, Some((barb, t))) if of_barbs > 0.0 => {
-                coded(TexelClass::Barb, self.barbs[barb].tangent(t), of_shaft + of_barbs)
+                let place = self.grounds.get(barb).map(|ground| {
+                    ground.place(self.barbs[barb], t, centre, self.loose_barbs_coverage(barb, t, centre))
+                });
+                (coded(TexelClass::Barb, self.barbs[barb].tangent(t), of_shaft + of_barbs), place)
             }
-            _ => NOTHING,
+            _ => (NOTHING, None),
         }
     }
 

@@ -16,6 +16,7 @@ use super::material::{BoundMaterial, CHANNELS};
 use super::ray::{Colour, Frame, Hit, Ray, Vector};
 use super::sampler::{PixelSeed, SampleNumbers, Sampler};
 use super::scene::{Meaning, Scene};
+use super::sheet::Blend;
 use crate::bsdf::{Direction, Sample};
 
 /// Scatterings before a path may end by chance.
@@ -274,16 +275,19 @@ impl<'a> Integrator<'a> {
                         self.add_light_met(light, choice, path, hit.distance, &mut sums[path.pixel]);
                         break;
                     }
-                    Meaning::Material { material, coverage } if is_covered(sample, path, coverage) => {
-                        // A path that has scattered often enough may still go straight on.
-                        if !self.is_spent(path) || self.materials[material].passes {
-                            let vertex = self.vertex(sample, number, path, &hit, material);
-                            workspace.vertices[material].push(vertex);
+                    Meaning::Material { blend, coverage } => match covering(sample, path, &blend, coverage) {
+                        Some(material) => {
+                            // A path that has scattered often enough may still go straight on.
+                            if !self.is_spent(path) || self.materials[material].passes {
+                                let vertex = self.vertex(sample, number, path, &hit, material);
+                                workspace.vertices[material].push(vertex);
+                            }
+                            break;
                         }
-                        break;
-                    }
-                    // Through an open part, which is neither a bounce nor a shadow.
-                    Meaning::Material { .. } | Meaning::Nothing => path.nearest = hit.distance + self.start,
+                        // Through an open part, which is neither a bounce nor a shadow.
+                        None => path.nearest = hit.distance + self.start,
+                    },
+                    Meaning::Nothing => path.nearest = hit.distance + self.start,
                 }
             }
         }
@@ -453,10 +457,17 @@ impl<'a> Integrator<'a> {
     }
 }
 
-/// Whether a path meets what covers this share of a point.
+/// The material that a path meets where a blend covers this share of a point; None where it goes through.
 #[inline]
-fn is_covered(sample: &SampleNumbers, path: &Path, coverage: f64) -> bool {
-    coverage >= 1.0 || sample.four(path.seed, 2 * path.events)[3] < coverage
+fn covering(sample: &SampleNumbers, path: &Path, blend: &Blend, coverage: f64) -> Option<usize> {
+    if coverage >= 1.0
+        && let Some(material) = blend.only()
+    {
+        return Some(material);
+    }
+    // One number decides both: below the coverage it is uniform again.
+    let random = sample.four(path.seed, 2 * path.events)[3];
+    (random < coverage).then(|| blend.chosen(random / coverage))
 }
 
 /// Whether a direction lies on the same side of the interpolated surface as of the true one: else light would leak

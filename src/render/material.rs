@@ -1,21 +1,25 @@
-//! What lies on a surface: a scattering model with its parameters, one of which a texture may vary.
+//! What lies on a surface: a scattering model with its parameters, which may differ from place to place.
 
 use super::ray::Colour;
 use super::texture::Texture;
-use crate::bsdf::{Bsdf, Direction, Model, ModelError};
+use crate::bsdf::{Bsdf, ChannelMix, Direction, Model, ModelError, PICTURE_CHANNELS};
 
 /// Channels of a picture.
-pub(super) const CHANNELS: usize = 3;
+pub(super) const CHANNELS: usize = PICTURE_CHANNELS;
 
 /// A model with the values of its parameters.
 ///
-/// A texture varies a parameter on which the scattering function depends linearly: a diffuse weight, an albedo. Channels
-/// are lanes of one evaluation, so the model is made for six of them, the picture's three twice: first with the
+/// Of the parameters on which a scattering function depends linearly (a diffuse weight, an albedo) one may be textured.
+/// Channels are lanes of one evaluation, so the model is made for six of them, the picture's three twice: first with the
 /// parameter at 0, then at 1. What lies between is a mean of the two, and nothing is bound anew for a texel.
+///
+/// Any parameters may differ between *shades*, each a list of values. What lies between two shades is a mixture of both: a
+/// [`Blend`](super::Blend).
 #[derive(Debug)]
 pub struct Material {
     model: Box<dyn Model>,
-    values: Vec<f64>,
+    shades: Vec<Vec<f64>>,
+    mix: Option<ChannelMix>,
     texture: Option<Texture>,
 }
 
@@ -25,9 +29,21 @@ impl Material {
     /// # Errors
     /// A value outside its parameter's bounds.
     pub fn plain(model: Box<dyn Model>, values: Vec<f64>) -> Result<Self, ModelError> {
-        assert_eq!(model.channel_count(), CHANNELS, "a picture has three channels");
-        model.check(&values)?;
-        Ok(Self { model, values, texture: None })
+        Self::shaded(model, vec![values], None)
+    }
+
+    /// A material of one or more shades: a model of three channels, or of as many as the mix makes three of.
+    ///
+    /// # Errors
+    /// A value outside its parameter's bounds.
+    pub fn shaded(model: Box<dyn Model>, shades: Vec<Vec<f64>>, mix: Option<ChannelMix>) -> Result<Self, ModelError> {
+        let channels = mix.as_ref().map_or(CHANNELS, ChannelMix::channel_count);
+        assert_eq!(model.channel_count(), channels, "a picture has three channels");
+        assert!(!shades.is_empty(), "a material has a shade");
+        for values in &shades {
+            model.check(values)?;
+        }
+        Ok(Self { model, shades, mix, texture: None })
     }
 
     /// A material with a texture: a model of six channels, the last three those of the first with a parameter at 1 that
@@ -38,15 +54,23 @@ impl Material {
     pub fn textured(model: Box<dyn Model>, values: Vec<f64>, texture: Texture) -> Result<Self, ModelError> {
         assert_eq!(model.channel_count(), 2 * CHANNELS, "a textured model has each channel twice");
         model.check(&values)?;
-        Ok(Self { model, values, texture: Some(texture) })
+        Ok(Self { model, shades: vec![values], mix: None, texture: Some(texture) })
     }
 
-    pub(super) fn bind(&self) -> BoundMaterial<'_> {
-        let bsdf = self.model.bind_for_picture(&self.values);
-        // Where light passes for any direction it passes for the normal or for a slanting one.
-        let directions = [Direction::z(), -Direction::z(), Direction::new(0.6, 0.0, 0.8)];
-        let passes = directions.iter().any(|direction| bsdf.straight_through(direction) > 0.0);
-        BoundMaterial { bsdf, texture: self.texture.as_ref(), channels: self.model.channel_count(), passes }
+    /// Number of its shades.
+    pub fn shade_count(&self) -> usize {
+        self.shades.len()
+    }
+
+    /// Each shade, bound.
+    pub(super) fn bind(&self) -> impl Iterator<Item = BoundMaterial<'_>> {
+        let channels = if self.texture.is_some() { 2 * CHANNELS } else { CHANNELS };
+        self.model.bind_for_picture(&self.shades, self.mix.as_ref()).into_iter().map(move |bsdf| {
+            // Where light passes for any direction it passes for the normal or for a slanting one.
+            let directions = [Direction::z(), -Direction::z(), Direction::new(0.6, 0.0, 0.8)];
+            let passes = directions.iter().any(|direction| bsdf.straight_through(direction) > 0.0);
+            BoundMaterial { bsdf, texture: self.texture.as_ref(), channels, passes }
+        })
     }
 }
 
@@ -97,10 +121,10 @@ mod tests {
         };
         let (model, values) = plain(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0], &twice);
         let textured = Material::textured(model, values, Texture::new(1, vec![texel]).unwrap()).unwrap();
-        let textured = textured.bind();
+        let textured = textured.bind().next().unwrap();
         let (model, values) = plain(&texel.map(f64::from), &rgb);
         let plain = Material::plain(model, values).unwrap();
-        let plain = plain.bind();
+        let plain = plain.bind().next().unwrap();
 
         let (incoming, outgoing) = (Direction::new(0.6, 0.0, 0.8), Direction::new(0.0, -0.28, 0.96));
         let (mut six, mut three) = ([0.0; 6], [0.0; 3]);

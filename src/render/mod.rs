@@ -38,7 +38,7 @@ pub use ray::{Colour, Frame, Hit, Ray, Vector};
 pub use sampler::Sampler;
 pub use scene::Scene;
 pub use shape::{Rectangle, Sphere};
-pub use sheet::{Pattern, Sheet, Vanes};
+pub use sheet::{Blend, Pattern, Sheet, Vanes};
 pub use texture::Texture;
 pub use tiles::{Checkpoint, Control, Resolution, render};
 

@@ -7,7 +7,7 @@ use super::mesh::{Mesh, MeshPoint};
 use super::ray::{Frame, Hit, Ray, Vector};
 use super::rectangles::{LANES, RectangleBlock};
 use super::shape::{Rectangle, Sphere};
-use super::sheet::Sheet;
+use super::sheet::{Blend, Sheet};
 
 /// What lies on a shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,7 +44,8 @@ enum Met {
 }
 
 impl Scene {
-    /// An empty scene with these materials, which its shapes name by number.
+    /// An empty scene with these materials, which its shapes name by number: counted over all shades of all materials, so that
+    /// a material's number is that of its first shade.
     pub fn new(camera: Camera, materials: Vec<Material>) -> Self {
         Self {
             camera,
@@ -57,6 +58,13 @@ impl Scene {
             surfaces: Vec::new(),
             lights: Vec::new(),
         }
+    }
+
+    /// Adds a material, and says the number of its first shade.
+    pub fn add_material(&mut self, material: Material) -> usize {
+        let number = self.materials.iter().map(Material::shade_count).sum();
+        self.materials.push(material);
+        number
     }
 
     /// Where the camera stands.
@@ -134,14 +142,15 @@ impl Scene {
 
     fn add_surface(&mut self, surface: Surface) -> usize {
         if let Surface::Material(material) = surface {
-            assert!(material < self.materials.len(), "there is no material number {material}");
+            let count: usize = self.materials.iter().map(Material::shade_count).sum();
+            assert!(material < count, "there is no material number {material}");
         }
         self.surfaces.push(surface);
         self.surfaces.len() - 1
     }
 
     pub(super) fn bind_materials(&self) -> Vec<BoundMaterial<'_>> {
-        self.materials.iter().map(Material::bind).collect()
+        self.materials.iter().flat_map(Material::bind).collect()
     }
 
     /// Radius of a sphere about the centre of its bounds that holds all shapes, mm; 1 without any.
@@ -258,11 +267,11 @@ impl Scene {
     pub(super) fn meaning(&self, hit: &mut Hit) -> Meaning {
         match self.surfaces[hit.surface] {
             Surface::Light(light) => Meaning::Light(light),
-            Surface::Material(material) => Meaning::Material { material, coverage: 1.0 },
+            Surface::Material(material) => Meaning::Material { blend: Blend::pure(material), coverage: 1.0 },
             Surface::Sheet(sheet) => match self.sheets[sheet].at(hit) {
                 Some(point) => {
                     hit.tangent = point.tangent;
-                    Meaning::Material { material: point.material, coverage: point.coverage }
+                    Meaning::Material { blend: point.blend, coverage: point.coverage }
                 }
                 None => Meaning::Nothing,
             },
@@ -286,9 +295,13 @@ impl Scene {
         match self.meaning(&mut hit) {
             Meaning::Light(_) => 0.0,
             Meaning::Nothing => 1.0,
-            Meaning::Material { material, coverage } => {
+            Meaning::Material { blend, coverage } => {
                 let frame = Frame::new(hit.normal, hit.tangent);
-                let open = materials[material].bsdf.straight_through(&frame.to_local(&ray.direction));
+                let direction = frame.to_local(&ray.direction);
+                let open = |(material, share): (usize, f64)| {
+                    if share > 0.0 { share * materials[material].bsdf.straight_through(&direction) } else { 0.0 }
+                };
+                let open: f64 = blend.parts().map(open).sum();
                 1.0 - coverage * (1.0 - open)
             }
         }
@@ -300,8 +313,8 @@ impl Scene {
 pub(super) enum Meaning {
     /// A light, by its number.
     Light(usize),
-    /// A material, by its number, that covers this share of the point; the rest is open.
-    Material { material: usize, coverage: f64 },
+    /// A material or two that cover this share of the point; the rest is open.
+    Material { blend: Blend, coverage: f64 },
     /// Nothing.
     Nothing,
 }

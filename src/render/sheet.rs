@@ -22,28 +22,78 @@ pub struct Sheet {
 pub enum Vanes {
     /// One material all over, by its number.
     Plain(usize),
-    /// A pattern.
+    /// Something else from place to place.
     Pattern(Pattern),
 }
 
-/// Which material lies where, in rows from the top over the whole map.
+/// What lies where, in rows from the top over the whole map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
     width: usize,
-    materials: Vec<usize>,
+    blends: Vec<Blend>,
+}
+
+/// What lies at a place: a material, or a mixture of up to four.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Blend {
+    /// Numbers of the materials.
+    materials: [u16; 4],
+    /// Share of the area that each takes; they sum to 1.
+    shares: [f32; 4],
+}
+
+impl Blend {
+    /// One material, by its number.
+    pub fn pure(material: usize) -> Self {
+        Self::new([(u16::try_from(material).unwrap_or(u16::MAX), 1.0), (0, 0.0), (0, 0.0), (0, 0.0)])
+    }
+
+    /// Materials by their numbers, each with the share of the area that it takes. The shares sum to 1.
+    pub fn new(parts: [(u16, f32); 4]) -> Self {
+        Self { materials: parts.map(|(material, _)| material), shares: parts.map(|(_, share)| share) }
+    }
+
+    /// The material that a random number in [0, 1) falls to.
+    #[inline]
+    pub(super) fn chosen(&self, random: f64) -> usize {
+        let mut rest = random;
+        let mut chosen = 0;
+        for (place, share) in self.shares.iter().enumerate() {
+            if *share > 0.0 {
+                chosen = place;
+                rest -= f64::from(*share);
+                if rest < 0.0 {
+                    break;
+                }
+            }
+        }
+        self.materials[chosen].into()
+    }
+
+    /// The material, where there is only one.
+    #[inline]
+    pub(super) fn only(&self) -> Option<usize> {
+        (self.shares[0] >= 1.0).then(|| self.materials[0].into())
+    }
+
+    /// The materials with their shares.
+    #[inline]
+    pub(super) fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.materials.into_iter().zip(self.shares).map(|(material, share)| (material.into(), share.into()))
+    }
 }
 
 impl Pattern {
-    /// A pattern of this width; None where the materials fill no whole rows.
-    pub fn new(width: usize, materials: Vec<usize>) -> Option<Self> {
-        let whole = width > 0 && !materials.is_empty() && materials.len().is_multiple_of(width);
-        whole.then_some(Self { width, materials })
+    /// A pattern of this width; None where the blends fill no whole rows.
+    pub fn new(width: usize, blends: Vec<Blend>) -> Option<Self> {
+        let whole = width > 0 && !blends.is_empty() && blends.len().is_multiple_of(width);
+        whole.then_some(Self { width, blends })
     }
 
-    /// The material at the nearest texel: materials are not blended.
-    fn at(&self, [u, v]: [f64; 2]) -> usize {
-        let height = self.materials.len() / self.width;
-        self.materials[nearest(1.0 - v, height) * self.width + nearest(u, self.width)]
+    /// What lies at the nearest texel: patterns are not interpolated.
+    fn at(&self, [u, v]: [f64; 2]) -> Blend {
+        let height = self.blends.len() / self.width;
+        self.blends[nearest(1.0 - v, height) * self.width + nearest(u, self.width)]
     }
 }
 
@@ -57,8 +107,8 @@ fn nearest(share: f64, count: usize) -> usize {
 /// What a ray meets on a sheet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SheetPoint {
-    /// Number of the material.
-    pub(super) material: usize,
+    /// Its material, or materials.
+    pub(super) blend: Blend,
     /// Share that the feather covers; the rest is open.
     pub(super) coverage: f64,
     /// Along barb or shaft, in the scene.
@@ -70,17 +120,17 @@ impl Sheet {
     #[inline]
     pub(super) fn at(&self, hit: &Hit) -> Option<SheetPoint> {
         let texel = self.map.lookup(hit.uv[0], hit.uv[1]);
-        let material = match texel.class {
+        let blend = match texel.class {
             TexelClass::Nothing => return None,
-            TexelClass::Shaft => self.shaft,
+            TexelClass::Shaft => Blend::pure(self.shaft),
             TexelClass::Barb => match &self.vanes {
-                Vanes::Plain(material) => *material,
+                Vanes::Plain(material) => Blend::pure(*material),
                 Vanes::Pattern(pattern) => pattern.at(hit.uv),
             },
         };
         let upwards = hit.normal.cross(&hit.tangent);
         let [right, up] = texel.tangent;
         let tangent = (hit.tangent * right + upwards * up).try_normalize(0.0).unwrap_or(hit.tangent);
-        Some(SheetPoint { material, coverage: texel.coverage, tangent })
+        Some(SheetPoint { blend, coverage: texel.coverage, tangent })
     }
 }

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::error::{SceneError, SceneProblem};
-use super::feather::sheet;
-use super::file::{CameraFile, ImageFile, LightFile, ObjectFile, SceneFile};
+use super::feather::{Materials, with_feather, with_species};
+use super::file::{CameraFile, ImageFile, LightFile, MaterialFile, ObjectFile, SceneFile};
 use super::inputs::Inputs;
-use super::material::material;
+use super::material::{Spectrum, material};
 use crate::nearest::suggestion;
 use crate::number::plain;
 use crate::render::{
@@ -67,16 +67,18 @@ fn check(file: &SceneFile, path: &Path) -> Result<CheckedScene, SceneProblem> {
         return Err(SceneProblem::key("wavelengths_nm", problem));
     }
     let camera = camera(&file.camera)?;
+    let spectrum = Spectrum::new(&file.wavelengths_nm)?;
     let mut inputs = Inputs::beside(path);
     let mut materials = Vec::new();
     let mut numbers = BTreeMap::new();
     for (name, design) in &file.materials {
         numbers.insert(name.as_str(), materials.len());
-        materials.push(material(&format!("materials.{name}"), design, &file.wavelengths_nm, &mut inputs)?);
+        materials.push(material(&format!("materials.{name}"), design, &spectrum, &mut inputs)?);
     }
     let mut scene = Scene::new(camera, materials);
     for (number, object) in file.objects.iter().enumerate() {
-        scene = with_object(scene, &format!("objects[{}]", number + 1), object, &numbers, &mut inputs)?;
+        let key = format!("objects[{}]", number + 1);
+        scene = with_object(scene, &key, object, &numbers, &file.materials, &spectrum, &mut inputs)?;
     }
     let mut environments = 0;
     for (number, light) in file.lights.iter().enumerate() {
@@ -158,6 +160,8 @@ fn with_object(
     key: &str,
     object: &ObjectFile,
     materials: &BTreeMap<&str, usize>,
+    designs: &BTreeMap<String, MaterialFile>,
+    spectrum: &Spectrum,
     inputs: &mut Inputs,
 ) -> Result<Scene, SceneProblem> {
     let named = |key: &str, name: &str| {
@@ -192,7 +196,10 @@ fn with_object(
             }
             Ok(scene.with_mesh(mesh, material))
         }
-        ObjectFile::Feather(design) => Ok(scene.with_sheet(sheet(key, design, &named, inputs)?)),
+        ObjectFile::Feather(design) => {
+            with_feather(scene, key, design, &Materials { numbers: &named, designs, spectrum }, inputs)
+        }
+        ObjectFile::Species(design) => with_species(scene, key, design, spectrum, inputs),
     }
 }
 

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::paint_file::{BarbsShown, LayerFile};
 use crate::job::ModelFile;
 use crate::measure::photograph::Encoding;
 use crate::render::{Sampler, ToneMapping};
@@ -19,9 +20,11 @@ pub struct SceneFile {
     /// Remarks and sources.
     #[serde(default)]
     pub about: String,
-    /// Wavelengths of the three channels, nm, the longest first, shown as the linear red, green and blue of Rec. 709.
+    /// Wavelengths for which the materials' models are made, nm. Three, the longest first, are shown as the linear red, green and blue of Rec. 709
+    /// as they are. Of four or more, which rise, the colour is shown: the spectrum that a material scatters, under CIE illuminant
+    /// D65, for the CIE 1931 observer. Lights are white where their channels are equal.
     #[serde(default = "default_wavelengths_nm")]
-    pub wavelengths_nm: [f64; 3],
+    pub wavelengths_nm: Vec<f64>,
     /// The picture to make.
     pub image: ImageFile,
     /// From where it is seen.
@@ -39,8 +42,8 @@ pub struct SceneFile {
     pub lights: Vec<LightFile>,
 }
 
-fn default_wavelengths_nm() -> [f64; 3] {
-    [645.0, 525.0, 445.0]
+fn default_wavelengths_nm() -> Vec<f64> {
+    vec![645.0, 525.0, 445.0]
 }
 
 fn default_scatterings() -> u32 {
@@ -156,6 +159,8 @@ pub enum ObjectFile {
     Mesh(MeshFile),
     /// A flat feather.
     Feather(FeatherSheetFile),
+    /// A flat feather of a kept species.
+    Species(SpeciesSheetFile),
 }
 
 /// A sphere. Its tangents run along its circles of latitude about z.
@@ -223,6 +228,29 @@ pub struct FeatherSheetFile {
     /// Where the vanes are made of something else.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pattern: Option<PatternFile>,
+    /// Layers of paint on the vanes, one over another: pigment that is thicker here than there, bars, bands, spots.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub paint: Vec<LayerFile>,
+    /// How barbs and barbules are told apart.
+    #[serde(default)]
+    pub barbs: BarbsShown,
+}
+
+/// The feather of a kept species, flat in the plane of `right` and `up`; `right` × `up` is its upper side.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpeciesSheetFile {
+    /// The entry's JSON, beside the scene.
+    pub file: PathBuf,
+    /// Resolution of its map; without this key its longer side has 2048 texels.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixels_per_mm: Option<f64>,
+    /// Where its middle lies.
+    pub centre_mm: [f64; 3],
+    /// The feather's right in the scene, of any length.
+    pub right: [f64; 3],
+    /// The feather's up, from base to tip, in the scene, perpendicular to `right`, of any length.
+    pub up: [f64; 3],
 }
 
 /// A picture over the whole map whose colours stand for materials.

@@ -3,26 +3,76 @@
 use super::error::SceneProblem;
 use super::file::{MaterialFile, TextureFile};
 use super::inputs::Inputs;
-use crate::bsdf::{Direction, Model};
+use crate::bsdf::{ChannelMix, Direction, Model};
 use crate::job::{JobError, ModelFile};
+use crate::measure::colour::rgb_weights;
 use crate::nearest::suggestion;
 use crate::render::{Material, Texture};
 
 /// Endings of the names of parameters that have one value in each of three channels.
 const ENDINGS: [&str; 3] = ["r", "g", "b"];
 
-/// Makes a material of the scene's three wavelengths.
+/// Wavelengths of a spectrum at most: more than the eye tells apart.
+const MOST_WAVELENGTHS: usize = 128;
+
+/// The wavelengths that a scene's models are made for, and how they become a picture's channels.
+#[derive(Debug)]
+pub(super) struct Spectrum {
+    wavelengths_nm: Vec<f64>,
+    /// Absent where the three wavelengths are the channels.
+    mix: Option<ChannelMix>,
+}
+
+impl Spectrum {
+    /// Three wavelengths, or more that rise.
+    pub(super) fn new(wavelengths_nm: &[f64]) -> Result<Self, SceneProblem> {
+        let wrong = |problem: String| Err(SceneProblem::key("wavelengths_nm", problem));
+        if let [_, _, _] = wavelengths_nm {
+            return Ok(Self { wavelengths_nm: wavelengths_nm.to_vec(), mix: None });
+        }
+        if !(4..=MOST_WAVELENGTHS).contains(&wavelengths_nm.len()) {
+            let problem = "expected three, shown as red, green and blue, or 4 to 128 that rise, whose colour is shown";
+            return wrong(format!("found {} wavelengths; {problem}", wavelengths_nm.len()));
+        }
+        if let Some(pair) = wavelengths_nm.windows(2).find(|pair| !(pair[0] > 0.0 && pair[0] < pair[1])) {
+            return wrong(format!("found {} before {}; expected wavelengths that rise", pair[0], pair[1]));
+        }
+        match rgb_weights(wavelengths_nm) {
+            Some(weights) if weights.iter().flatten().all(|weight| weight.is_finite()) => {
+                Ok(Self { wavelengths_nm: wavelengths_nm.to_vec(), mix: Some(ChannelMix::new(weights)) })
+            }
+            _ => wrong("nothing of them can be seen; expected wavelengths from 380 to 780".to_owned()),
+        }
+    }
+
+    pub(super) fn wavelengths_nm(&self) -> &[f64] {
+        &self.wavelengths_nm
+    }
+
+    pub(super) fn mix(&self) -> Option<&ChannelMix> {
+        self.mix.as_ref()
+    }
+}
+
+/// Makes a material for the scene's wavelengths.
 pub(super) fn material(
     key: &str,
     design: &MaterialFile,
-    wavelengths_nm: &[f64; 3],
+    spectrum: &Spectrum,
     inputs: &mut Inputs,
 ) -> Result<Material, SceneProblem> {
     let Some(texture) = &design.texture else {
-        let model = model(key, &design.model, wavelengths_nm)?;
+        let model = model(key, &design.model, spectrum.wavelengths_nm())?;
         let values = values(key, model.as_ref(), design)?;
-        return Material::plain(model, values).map_err(|problem| wrong_value(key, problem));
+        return Material::shaded(model, vec![values], spectrum.mix().cloned())
+            .map_err(|problem| wrong_value(key, problem));
     };
+    let &[red, green, blue] = spectrum.wavelengths_nm() else {
+        let problem = "a texture gives red, green and blue their values, but this scene has a spectrum; give it three \
+                       `wavelengths_nm`, or take the texture out";
+        return Err(SceneProblem::key(format!("{key}.texture"), problem));
+    };
+    let wavelengths_nm = &[red, green, blue];
     let texture_key = format!("{key}.texture");
     let picture = inputs.picture(&format!("{texture_key}.file"), &texture.file, texture.encoding)?;
     textured(key, design, texture, picture, wavelengths_nm)
@@ -79,7 +129,7 @@ fn textured(
     Material::textured(six, of_six, picture).map_err(|problem| wrong_value(key, problem))
 }
 
-fn model(key: &str, design: &ModelFile, wavelengths_nm: &[f64]) -> Result<Box<dyn Model>, SceneProblem> {
+pub(super) fn model(key: &str, design: &ModelFile, wavelengths_nm: &[f64]) -> Result<Box<dyn Model>, SceneProblem> {
     design.scattering(wavelengths_nm).map_err(|error| match error {
         JobError::Model(problem) => SceneProblem::Model { key: format!("{key}.model"), problem: Box::new(problem) },
         JobError::Key { problem, .. } => SceneProblem::key(format!("{key}.model"), problem),
@@ -88,7 +138,7 @@ fn model(key: &str, design: &ModelFile, wavelengths_nm: &[f64]) -> Result<Box<dy
 }
 
 /// A value for each parameter: the typed one, or its default.
-fn values(key: &str, model: &dyn Model, design: &MaterialFile) -> Result<Vec<f64>, SceneProblem> {
+pub(super) fn values(key: &str, model: &dyn Model, design: &MaterialFile) -> Result<Vec<f64>, SceneProblem> {
     let parameters = model.parameters();
     let names = || parameters.iter().map(|parameter| parameter.name.as_str());
     if let Some(unknown) = design.parameters.keys().find(|typed| !names().any(|name| name == *typed)) {
@@ -99,7 +149,7 @@ fn values(key: &str, model: &dyn Model, design: &MaterialFile) -> Result<Vec<f64
     Ok(parameters.iter().map(|p| design.parameters.get(&p.name).copied().unwrap_or(p.default)).collect())
 }
 
-fn wrong_value(key: &str, problem: crate::bsdf::ModelError) -> SceneProblem {
+pub(super) fn wrong_value(key: &str, problem: crate::bsdf::ModelError) -> SceneProblem {
     SceneProblem::Model { key: format!("{key}.parameters"), problem: Box::new(problem) }
 }
 

@@ -9,9 +9,14 @@ mod error;
 mod feather;
 mod file;
 mod inputs;
+mod mask;
 mod material;
+mod paint;
+mod paint_file;
 mod read;
 mod schema;
+mod species;
+mod studio;
 
 pub use crate::measure::photograph::Encoding;
 pub use check::CheckedScene;
@@ -20,6 +25,9 @@ pub use error::{SceneError, SceneProblem};
 pub use file::{
     CameraFile, DirectionalLightFile, EnvironmentFile, FeatherSheetFile, ImageFile, LightFile, MaterialFile, MeshFile,
     ObjectFile, OrthographicFile, PatternFile, PerspectiveFile, PointLightFile, RectangleFile, RectangleLightFile,
-    SceneFile, SphereFile, SphereLightFile, TextureFile,
+    SceneFile, SpeciesSheetFile, SphereFile, SphereLightFile, TextureFile,
 };
+pub use paint_file::{BarbsShown, BarsFile, LayerFile, MaskFile, MottleFile, StripFile, VaneSide};
 pub use schema::schemas;
+pub use species::{SpeciesFile, SpeciesStatus};
+pub use studio::{PIXELS_PER_BARB, View, picture_wavelengths_nm, studio};

@@ -11,7 +11,7 @@ use serde_path_to_error::Segment;
 use super::error::{SceneError, SceneProblem};
 use super::file::{
     DirectionalLightFile, EnvironmentFile, FeatherSheetFile, MeshFile, OrthographicFile, PerspectiveFile,
-    PointLightFile, RectangleFile, RectangleLightFile, SceneFile, SphereFile, SphereLightFile,
+    PointLightFile, RectangleFile, RectangleLightFile, SceneFile, SpeciesSheetFile, SphereFile, SphereLightFile,
 };
 use crate::job::model_slip;
 use crate::json_file::OBJECT;
@@ -97,6 +97,7 @@ fn within(scene: &Value, slip: &Slip) -> Option<Slip> {
         (["objects", _], "rectangle") => deserialise::<RectangleFile>(rest).err()?,
         (["objects", _], "mesh") => deserialise::<MeshFile>(rest).err()?,
         (["objects", _], "feather") => deserialise::<FeatherSheetFile>(rest).err()?,
+        (["objects", _], "species") => deserialise::<SpeciesSheetFile>(rest).err()?,
         (["lights", _], "point") => deserialise::<PointLightFile>(rest).err()?,
         (["lights", _], "directional") => deserialise::<DirectionalLightFile>(rest).err()?,
         (["lights", _], "rectangle") => deserialise::<RectangleLightFile>(rest).err()?,

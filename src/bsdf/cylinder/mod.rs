@@ -35,6 +35,7 @@ mod pairs;
 mod panels;
 mod quadrature;
 mod sampling;
+mod shades;
 mod surface;
 mod tabulated;
 
@@ -55,6 +56,7 @@ use longitudinal::Longitudinal;
 use pairs::FEWEST;
 use quadrature::{Analyticity, PanelLengths};
 pub(super) use sampling::{AzimuthalSource, FibreSampler, LazySampler};
+pub(super) use shades::{PictureFibre, for_picture};
 use surface::{BareSurface, Surface};
 
 /// Light and viewer as the fibre sees them.

@@ -3,10 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AzimuthalLobe, Cylinder, CylinderParameters, LongitudinalMapping};
+use super::{AzimuthalLobe, Cylinder, CylinderParameters, LongitudinalMapping, PictureFibre, for_picture};
 use crate::bsdf::absorbers::{Absorbers, AmountScale};
 use crate::bsdf::channel_parameters::{ChannelParameter, Declarations};
-use crate::bsdf::{Bsdf, Model, ModelError, PICTURE_TOLERANCE};
+use crate::bsdf::{Bsdf, ChannelMix, Model, ModelError};
 use crate::parameter::{Parameter, Spread};
 use crate::pigment::PigmentDesign;
 
@@ -159,10 +159,11 @@ impl Model for CylinderModel {
         Box::new(self.cylinder(values))
     }
 
-    fn bind_for_picture(&self, values: &[f64]) -> Box<dyn Bsdf + '_> {
-        let cylinder = self.cylinder(values);
-        let table = cylinder.tabulate(PICTURE_TOLERANCE);
-        // Where no table of that size is good enough the fibre is evaluated itself, at some ten times the cost.
-        if table.error() <= PICTURE_TOLERANCE { Box::new(table) } else { Box::new(cylinder) }
+    fn bind_for_picture(&self, shades: &[Vec<f64>], mix: Option<&ChannelMix>) -> Vec<Box<dyn Bsdf + '_>> {
+        let without_sponge = vec![0.0; self.channel_count];
+        let fibre =
+            |values: &Vec<f64>| PictureFibre { cylinder: self.cylinder(values), sponge: without_sponge.clone() };
+        let fibres: Vec<PictureFibre> = shades.iter().map(fibre).collect();
+        for_picture(&fibres, mix, |number| Box::new(fibres[number].cylinder.clone()))
     }
 }

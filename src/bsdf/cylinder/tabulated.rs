@@ -12,6 +12,8 @@
 
 use rayon::prelude::*;
 
+use super::attenuation::Attenuation;
+use super::far_field::Refraction;
 use super::longitudinal::Longitudinal;
 use super::pairs::{FEWEST, PAIRS, PairAngles};
 use super::{AzimuthalSource, Cylinder, FibreAngles, FibreSampler, LazySampler, only, over_cosine};
@@ -32,6 +34,8 @@ pub struct TabulatedCylinder {
     entries: Vec<Entry>,
     /// N₃₊ over √cosθo, from 0 to 1, all channels of a point together.
     later: Vec<f32>,
+    /// What a sponge inside sends out, over (1 + cosφ), likewise; empty without a sponge.
+    sponge: Vec<f32>,
     error: f64,
     lobe_width: f64,
     sampler: LazySampler,
@@ -155,6 +159,7 @@ impl TabulatedCylinder {
             grid,
             entries,
             later,
+            sponge: Vec::new(),
             error: f64::NAN,
             lobe_width: cylinder.lobe.analytic_height(),
             sampler: LazySampler::default(),
@@ -223,22 +228,9 @@ impl TabulatedCylinder {
         let [reflected, once, twice] = self.longitudinal.evaluate(angles);
         let entered = angles.cos_theta_o * angles.cos_theta_o;
         self.interpolate(angles.cos_theta_o, angles.phi, [reflected, entered * once, entered * twice], values);
-        self.add_later(angles.cos_theta_o, twice, values);
-    }
-
-    #[inline(always)]
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a grid number is small and positive; the list holds f32"
-    )]
-    fn add_later(&self, cos_theta_o: f64, longitudinal: f64, values: &mut [f64]) {
-        let position = cos_theta_o.clamp(0.0, 1.0).sqrt() * LATER_INTERVALS as f64;
-        let before = (position as usize).min(LATER_INTERVALS - 1);
-        let share = position - before as f64;
-        let (low, high) = self.later[before * values.len()..][..2 * values.len()].split_at(values.len());
-        for (value, (&low, &high)) in values.iter_mut().zip(low.iter().zip(high)) {
-            *value += longitudinal * (f64::from(low) * (1.0 - share) + f64::from(high) * share);
+        add_from_list(&self.later, angles.cos_theta_o, twice, values);
+        if !self.sponge.is_empty() {
+            add_from_list(&self.sponge, angles.cos_theta_o, 1.0 + angles.phi.cos(), values);
         }
     }
 
@@ -279,7 +271,79 @@ impl TabulatedCylinder {
     }
 }
 
+/// Channels of a table made of those of another: for each new one, the old ones and their weights. What is reflected
+/// outside, what comes from inside, and of that what a sponge scatters have weights of their own.
+#[derive(Debug)]
+pub(super) struct Combination {
+    pub(super) outer: Vec<Vec<(usize, f64)>>,
+    pub(super) inner: Vec<Vec<(usize, f64)>>,
+    pub(super) sponge: Vec<Vec<(usize, f64)>>,
+}
+
 impl TabulatedCylinder {
+    /// The same table with a list of all the light that leaves each channel's inside, ½ ∫ Σ_{p≥1} Aₚ dh over 4π: a sponge's
+    /// that scatters everything.
+    pub(super) fn with_insides(mut self, cylinder: &Cylinder) -> Self {
+        let of_point = |k: usize| {
+            let root = k as f64 / LATER_INTERVALS as f64;
+            // Just beside the grazing end, as the lobes.
+            let cos_theta_o = (root * root).max(1e-7);
+            let sin_theta_o = (1.0 - cos_theta_o * cos_theta_o).max(0.0).sqrt();
+            let channels = cylinder.channels().map(move |(eta, sigma_a)| {
+                let mean = Attenuation::mean(&Refraction::new(eta, sin_theta_o, cos_theta_o), sigma_a);
+                #[expect(clippy::cast_possible_truncation, reason = "the table holds f32")]
+                let inside = ((mean.total() - mean.direct[0]) / (4.0 * std::f64::consts::PI)) as f32;
+                inside
+            });
+            channels.collect::<Vec<f32>>()
+        };
+        let points: Vec<Vec<f32>> = (0..=LATER_INTERVALS).into_par_iter().map(of_point).collect();
+        self.sponge = points.concat();
+        self
+    }
+
+    /// A table of other channels; where a sponge takes a share, from one with [`insides`](Self::with_insides).
+    pub(super) fn combined(&self, combination: &Combination) -> Self {
+        let Combination { outer, inner, sponge } = combination;
+        let (old, new) = (self.channel_count, outer.len());
+        let (old_blocks, new_blocks) = (old.div_ceil(ENTRY_CHANNELS), new.div_ceil(ENTRY_CHANNELS));
+        let mut entries = vec![[0.0; 16]; self.entries.len() / old_blocks * new_blocks];
+        for (entries, before) in entries.chunks_exact_mut(new_blocks).zip(self.entries.chunks_exact(old_blocks)) {
+            for lobe in 0..3 {
+                for (channel, weights) in if lobe == 0 { outer } else { inner }.iter().enumerate() {
+                    let each = weights.iter().map(|(old, weight)| {
+                        weight * f64::from(before[old / ENTRY_CHANNELS][lobe * ENTRY_CHANNELS + old % ENTRY_CHANNELS])
+                    });
+                    #[expect(clippy::cast_possible_truncation, reason = "the table holds f32")]
+                    let sum = each.sum::<f64>() as f32;
+                    entries[channel / ENTRY_CHANNELS][lobe * ENTRY_CHANNELS + channel % ENTRY_CHANNELS] = sum;
+                }
+            }
+        }
+        let list = |before: &[f32], weights: &[Vec<(usize, f64)>]| -> Vec<f32> {
+            let of_point = |point: &[f32]| {
+                #[expect(clippy::cast_possible_truncation, reason = "the table holds f32")]
+                let sum = |weights: &Vec<(usize, f64)>| {
+                    weights.iter().map(|(old, weight)| weight * f64::from(point[*old])).sum::<f64>() as f32
+                };
+                weights.iter().map(sum).collect::<Vec<f32>>()
+            };
+            before.chunks_exact(old).flat_map(of_point).collect()
+        };
+        let has_sponge = sponge.iter().any(|weights| !weights.is_empty());
+        Self {
+            longitudinal: self.longitudinal.clone(),
+            channel_count: new,
+            grid: self.grid,
+            entries,
+            later: list(&self.later, inner),
+            sponge: if has_sponge { list(&self.sponge, sponge) } else { Vec::new() },
+            error: self.error,
+            lobe_width: self.lobe_width,
+            sampler: LazySampler::default(),
+        }
+    }
+
     fn sampler(&self) -> &FibreSampler {
         self.sampler.get(|| {
             let lobes = Lobes { table: self, values: vec![0.0; self.channel_count] };
@@ -294,13 +358,30 @@ struct Lobes<'a> {
     values: Vec<f64>,
 }
 
+impl Lobes<'_> {
+    /// Over channels. Interpolation may fall below 0 by a trifle, and what is drawn by must not.
+    fn mean(&self) -> f64 {
+        (self.values.iter().sum::<f64>() / self.values.len() as f64).max(0.0)
+    }
+}
+
 impl AzimuthalSource for Lobes<'_> {
     fn lobe(&mut self, angles: &FibreAngles, path: usize) -> f64 {
         let entered = if path == 0 { 1.0 } else { angles.cos_theta_o * angles.cos_theta_o };
         let [longitudinal @ .., later] = only(path);
         self.table.interpolate(angles.cos_theta_o, angles.phi, longitudinal.map(|m| entered * m), &mut self.values);
-        self.table.add_later(angles.cos_theta_o, later, &mut self.values);
-        self.values.iter().sum::<f64>() / self.values.len() as f64
+        add_from_list(&self.table.later, angles.cos_theta_o, later, &mut self.values);
+        self.mean()
+    }
+
+    fn sponge(&mut self, angles: &FibreAngles) -> f64 {
+        if self.table.sponge.is_empty() {
+            return 0.0;
+        }
+        self.values.fill(0.0);
+        // ∫ (1 + cosφ) over the sphere.
+        add_from_list(&self.table.sponge, angles.cos_theta_o, 4.0 * std::f64::consts::PI, &mut self.values);
+        self.mean()
     }
 }
 
@@ -352,12 +433,32 @@ impl pulp::NullaryFnOnce for TabulatedPairs<'_> {
                 let cos_theta_o = angles.cos_theta_o[pair];
                 let entered = cos_theta_o * cos_theta_o;
                 table.interpolate(cos_theta_o, angles.phi[pair], [reflected, entered * once, entered * twice], values);
-                table.add_later(cos_theta_o, twice, values);
+                add_from_list(&table.later, cos_theta_o, twice, values);
+                if !table.sponge.is_empty() {
+                    add_from_list(&table.sponge, cos_theta_o, 1.0 + angles.phi[pair].cos(), values);
+                }
                 for value in values {
                     *value *= angles.inverse_cosine[pair];
                 }
             }
         }
+    }
+}
+
+/// Adds a multiple of what a list over √cosθo holds for a viewer, all channels of a point together.
+#[inline(always)]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a grid number is small and positive; the list holds f32"
+)]
+fn add_from_list(list: &[f32], cos_theta_o: f64, factor: f64, values: &mut [f64]) {
+    let position = cos_theta_o.clamp(0.0, 1.0).sqrt() * LATER_INTERVALS as f64;
+    let before = (position as usize).min(LATER_INTERVALS - 1);
+    let share = position - before as f64;
+    let (low, high) = list[before * values.len()..][..2 * values.len()].split_at(values.len());
+    for (value, (&low, &high)) in values.iter_mut().zip(low.iter().zip(high)) {
+        *value += factor * (f64::from(low) * (1.0 - share) + f64::from(high) * share);
     }
 }
 

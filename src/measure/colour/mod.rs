@@ -135,6 +135,23 @@ const RGB_TO_XYZ: [[f64; 3]; 3] = [
     [0.019_330_818_715_591_82, 0.119_194_779_794_625_99, 0.950_532_152_249_660_7],
 ];
 
+/// Weights with which values of a reflectance at these wavelengths, nm and rising, sum to linear Rec. 709 under D65: those of
+/// [`Xyz::of_reflectance`], each channel scaled so that white is exactly 1.
+///
+/// None if there are no wavelengths.
+pub fn rgb_weights(wavelengths_nm: &[f64]) -> Option<[Vec<f64>; 3]> {
+    let of_one = |one: usize| {
+        let values: Vec<f64> = (0..wavelengths_nm.len()).map(|other| f64::from(u8::from(other == one))).collect();
+        Some(Xyz::of_reflectance(wavelengths_nm, &values)?.to_linear_rgb().0)
+    };
+    let each = (0..wavelengths_nm.len()).map(of_one).collect::<Option<Vec<[f64; 3]>>>()?;
+    let channel = |k: usize| -> Vec<f64> {
+        let white: f64 = each.iter().map(|rgb| rgb[k]).sum();
+        each.iter().map(|rgb| rgb[k] / white).collect()
+    };
+    (!each.is_empty()).then(|| [0, 1, 2].map(channel))
+}
+
 /// Wavelength in nm and chromaticity of each spectral colour from 380 to 700 nm; beyond, the chromaticity stays where it is.
 pub fn spectral_locus() -> impl Iterator<Item = (f64, [f64; 2])> {
     OBSERVER_AND_D65.into_iter().enumerate().filter_map(|(index, [x, y, z, _])| {
