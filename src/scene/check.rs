@@ -8,6 +8,7 @@ use super::feather::{Materials, with_feather, with_species};
 use super::file::{CameraFile, ImageFile, LightFile, MaterialFile, ObjectFile, SceneFile};
 use super::inputs::Inputs;
 use super::material::{Spectrum, material};
+use crate::bsdf::ChannelMix;
 use crate::nearest::suggestion;
 use crate::number::plain;
 use crate::render::{
@@ -35,6 +36,8 @@ pub struct CheckedScene {
     pub settings: Settings,
     /// How radiance becomes shades.
     pub tone: ToneMapping,
+    /// How the models' channels become the picture's, where these are not themselves three.
+    pub(super) mix: Option<ChannelMix>,
     /// A digest of all that decides the picture: the scene, the files that it names, and the program's version.
     pub fingerprint: String,
 }
@@ -59,12 +62,6 @@ fn check(file: &SceneFile, path: &Path) -> Result<CheckedScene, SceneProblem> {
     if !(-50.0..=50.0).contains(&stops) {
         let problem = format!("found {stops}; expected a number of stops from -50 to 50");
         return Err(SceneProblem::key("image.tone.exposure_stops", problem));
-    }
-    let [red, green, blue] = file.wavelengths_nm;
-    if !(red > green && green > blue) {
-        let problem =
-            format!("found [{red}, {green}, {blue}]; expected those of red, green and blue, the longest first");
-        return Err(SceneProblem::key("wavelengths_nm", problem));
     }
     let camera = camera(&file.camera)?;
     let spectrum = Spectrum::new(&file.wavelengths_nm)?;
@@ -108,6 +105,7 @@ fn check(file: &SceneFile, path: &Path) -> Result<CheckedScene, SceneProblem> {
         resolution,
         settings,
         tone: file.image.tone,
+        mix: spectrum.mix().cloned(),
         fingerprint: inputs.fingerprint(&text),
     })
 }

@@ -23,7 +23,7 @@ pub struct ContactSheet {
     /// How their radiance becomes shades, the same for all.
     pub tone: ToneMapping,
     /// Wavelengths of their channels, nm.
-    pub wavelengths_nm: [f64; 3],
+    pub wavelengths_nm: Vec<f64>,
     /// Samples a pixel.
     pub samples: u32,
     /// The scene's title.
@@ -93,7 +93,8 @@ pub fn contact_sheet(
     for cell in &sweep.cells {
         let values = places.iter().map(|place| cell.parameters[*place]).collect();
         let model = model().map_err(|error| job.placed(error, 0))?;
-        let made = Material::plain(model, values).map_err(|error| job.placed(error.into(), 0))?;
+        let shade = Material::shaded(model, vec![values], checked.mix.clone());
+        let made = shade.map_err(|error| job.placed(error.into(), 0))?;
         checked.scene.replace_material(number, made);
         pictures.push(render(&checked.scene, checked.resolution, checked.settings, control)?);
     }
@@ -145,9 +146,9 @@ fn scene(job: &Job, design: &RenderFile) -> Result<(SceneFile, PathBuf, String),
 }
 
 /// The three wavelengths at which all of the sweep's spectra are read, the longest first; None where they are read at others.
-fn wavelengths_nm(sweep: &Sweep) -> Option<[f64; 3]> {
+fn wavelengths_nm(sweep: &Sweep) -> Option<Vec<f64>> {
     let mut channels: [f64; 3] = sweep.views.first()?.wavelengths_nm.as_slice().try_into().ok()?;
     channels.sort_by(|a, b| b.total_cmp(a));
     let same = |nm: &[f64]| nm.len() == 3 && nm.iter().rev().eq(&channels);
-    sweep.views.iter().all(|view| same(&view.wavelengths_nm)).then_some(channels)
+    sweep.views.iter().all(|view| same(&view.wavelengths_nm)).then(|| channels.to_vec())
 }

@@ -1,10 +1,10 @@
 //! How much of a layer of paint lies at a place of a vane.
 
 use super::error::SceneProblem;
-use super::file::Encoding;
 use super::inputs::Inputs;
 use super::paint_file::{BarsFile, MaskFile, MottleFile, StripFile, VaneSide};
 use crate::geometry::{Side, VanePlace};
+use crate::measure::photograph::Encoding;
 use crate::render::Texture;
 
 /// A layer's mask, checked.

@@ -27,7 +27,11 @@ impl Spectrum {
     /// Three wavelengths, or more that rise.
     pub(super) fn new(wavelengths_nm: &[f64]) -> Result<Self, SceneProblem> {
         let wrong = |problem: String| Err(SceneProblem::key("wavelengths_nm", problem));
-        if let [_, _, _] = wavelengths_nm {
+        if let &[red, green, blue] = wavelengths_nm {
+            if !(red > green && green > blue) {
+                let expected = "expected those of red, green and blue, the longest first";
+                return wrong(format!("found [{red}, {green}, {blue}]; {expected}"));
+            }
             return Ok(Self { wavelengths_nm: wavelengths_nm.to_vec(), mix: None });
         }
         if !(4..=MOST_WAVELENGTHS).contains(&wavelengths_nm.len()) {

@@ -25,8 +25,8 @@ pub enum View {
 /// Pixels from one barb to the next in the closest view.
 pub const PIXELS_PER_BARB: f64 = 8.0;
 
-/// Wavelengths of the pictures, nm: with steps of 20 nm the feathers that are kept have the colours of steps of 5 nm to ΔE2000
-/// 0.5, which a test holds them to.
+/// Wavelengths of the pictures, nm. With steps of 20 nm the feathers that are kept have the colours of steps of 5 nm to ΔE2000
+/// 0.5, with the usual three wavelengths they miss them by up to 22: a test measures both.
 pub fn picture_wavelengths_nm() -> Vec<f64> {
     (0..=16).map(|k| 390.0 + 20.0 * f64::from(k)).collect()
 }
@@ -34,8 +34,8 @@ pub fn picture_wavelengths_nm() -> Vec<f64> {
 /// Height of the feather above the table, mm: it lies on it.
 const ABOVE_TABLE_MM: f64 = 0.6;
 
-/// What the table reflects.
-const TABLE_ALBEDO: f64 = 0.75;
+/// What the table reflects: dark, since a bird's feathers lie on others and let little light through.
+const TABLE_ALBEDO: f64 = 0.08;
 
 /// The scene that shows the entry that was read from this file.
 ///
@@ -65,12 +65,12 @@ pub fn studio(entry: &SpeciesFile, path: &Path, view: View) -> Result<SceneFile,
     let (image, camera, pixels_per_mm) = match view {
         View::Flat => {
             let picture_mm = 1.08 * length_mm;
-            let scale = 840.0 / picture_mm;
+            let scale = 720.0 / picture_mm;
             let height = rounded(1.3 * width_mm * scale);
-            (image(840, height), above([0.0, 0.0], f64::from(height) / scale), 2.0 * scale)
+            (image(720, height), above([0.0, 0.0], f64::from(height) / scale), 2.0 * scale)
         }
         View::Angle => {
-            // The tip points away to the right; 22° hold the whole feather from this distance.
+            // From behind the base, so that the tip points away to the right.
             let distance_mm = 2.3 * length_mm;
             let (elevation, azimuth) = (30f64.to_radians(), (-55f64).to_radians());
             let flat = distance_mm * elevation.cos();
@@ -80,12 +80,12 @@ pub fn studio(entry: &SpeciesFile, path: &Path, view: View) -> Result<SceneFile,
                 up: [0.0, 0.0, 1.0],
                 field_of_view_deg: 13.0,
             });
-            (image(840, 420), camera, 2.0 * 840.0 / length_mm)
+            (image(720, 360), camera, 2.0 * 720.0 / length_mm)
         }
         View::CloseUp => {
             let pitch_mm = feather.vanes.iter().map(|vane| feather.barb_pitch_mm(vane)).fold(f64::INFINITY, f64::min);
             let scale = PIXELS_PER_BARB / pitch_mm;
-            let (width, height) = (720, 480);
+            let (width, height) = (480, 320);
             // Beside the rachis, on the wider vane, at six tenths of its length.
             let shaft = feather.shaft.curve.point(feather.shaft.at_rachis_mm(0.6 * feather.shaft.rachis_length_mm()));
             let [left, right] = feather.vanes.each_ref().map(|vane| vane.mean_barb_length_mm());
@@ -110,8 +110,8 @@ pub fn studio(entry: &SpeciesFile, path: &Path, view: View) -> Result<SceneFile,
         wavelengths_nm: picture_wavelengths_nm(),
         image,
         camera,
-        // Light goes through the vane to the table and back, a few times.
-        scatterings: 6,
+        // Light goes through the vane to the table and back.
+        scatterings: 4,
         materials: [("table".to_owned(), table)].into(),
         objects: vec![
             ObjectFile::Species(SpeciesSheetFile {
@@ -129,8 +129,8 @@ pub fn studio(entry: &SpeciesFile, path: &Path, view: View) -> Result<SceneFile,
             }),
         ],
         lights: vec![
-            LightFile::Directional(DirectionalLightFile { towards_light: [-0.35, 0.55, 0.75], irradiance: [2.4; 3] }),
-            LightFile::Environment(EnvironmentFile { radiance: [0.45; 3], file: None, azimuth_deg: 0.0 }),
+            LightFile::Directional(DirectionalLightFile { towards_light: [-0.35, 0.55, 0.75], irradiance: [4.2; 3] }),
+            LightFile::Environment(EnvironmentFile { radiance: [0.8; 3], file: None, azimuth_deg: 0.0 }),
         ],
     })
 }

@@ -6,7 +6,9 @@
 mod estimators;
 mod feathers;
 mod files;
+mod paint;
 mod sources;
+mod species;
 
 use std::f64::consts::{PI, TAU};
 use std::sync::atomic::AtomicBool;

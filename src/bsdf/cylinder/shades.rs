@@ -10,7 +10,10 @@
 //! over azimuths in a fibre without absorption (a test holds it to that); beyond 40/radius every fibre counts as 40, which
 //! lets less than e⁻⁵⁰ pass.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
+
+use rayon::prelude::*;
 
 use super::Cylinder;
 use super::tabulated::{Combination, TabulatedCylinder};
@@ -103,7 +106,7 @@ fn together(fibres: &[&PictureFibre], mix: Option<&ChannelMix>) -> Vec<Option<Ar
     let absorptions = || fibres.iter().flat_map(|fibre| fibre.cylinder.channels()).map(|(_, sigma_a)| sigma_a);
     let knots = Knots::up_to(absorptions().fold(0.0, f64::max).min(BLACK));
     let over_absorption = fibres[0].cylinder.with_absorptions(knots.absorptions());
-    let table = over_absorption.tabulate(SHADE_TOLERANCE);
+    let table = over_absorption.tabulate_shades(SHADE_TOLERANCE);
     if table.error() > SHADE_TOLERANCE {
         return vec![None; fibres.len()];
     }
@@ -114,7 +117,7 @@ fn together(fibres: &[&PictureFibre], mix: Option<&ChannelMix>) -> Vec<Option<Ar
         let combination = combination(fibre, mix, |channel| knots.weights(absorptions[channel]).to_vec());
         Some(Arc::new(table.combined(&combination)))
     };
-    fibres.iter().map(shade).collect()
+    fibres.par_iter().map(shade).collect()
 }
 
 /// How the picture's channels are made of a table's: `parts` says of which a channel of the fibre consists.
@@ -134,7 +137,12 @@ fn combination(
                 let scale = weight * share(*sponge);
                 parts(channel).into_iter().map(move |(knot, part)| (knot, scale * part))
             });
-            each.filter(|(_, weight)| *weight != 0.0).collect()
+            // Wavelengths share knots.
+            let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
+            for (knot, weight) in each {
+                *sums.entry(knot).or_default() += weight;
+            }
+            sums.into_iter().filter(|(_, weight)| *weight != 0.0).collect()
         };
         weights.iter().map(of).collect()
     };

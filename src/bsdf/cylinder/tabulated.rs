@@ -64,13 +64,22 @@ impl Cylinder {
     /// What was reached is told by [`TabulatedCylinder::error`]: refinement stops at 2¹⁸ points, and a tolerance below 1e-6,
     /// the resolution of the stored numbers, is not pursued.
     pub fn tabulate(&self, tolerance: f64) -> TabulatedCylinder {
+        self.tabulate_by(tolerance, false)
+    }
+
+    /// The same where the channels are shades of one fibre: each is as good as `tolerance` of the brightest of them.
+    pub(super) fn tabulate_shades(&self, tolerance: f64) -> TabulatedCylinder {
+        self.tabulate_by(tolerance, true)
+    }
+
+    fn tabulate_by(&self, tolerance: f64, of_brightest: bool) -> TabulatedCylinder {
         let lobe_width = self.lobe.analytic_height();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small positive whole number")]
         let azimuths = (16.0 * std::f64::consts::PI / lobe_width).ceil() as usize;
         let mut grid = Grid { inclinations: 24, azimuths: azimuths.max(32) };
         loop {
             let mut table = TabulatedCylinder::sample(self, grid);
-            let [by_inclination, by_azimuth] = table.measure(self);
+            let [by_inclination, by_azimuth] = table.measure(self, of_brightest);
             table.error = 3.0 * (by_inclination + by_azimuth);
             let room = grid.inclinations * grid.azimuths < MOST_POINTS;
             if table.error <= tolerance || tolerance < 1e-6 || !room {
@@ -167,7 +176,8 @@ impl TabulatedCylinder {
     }
 
     /// Largest error half-way between rows and half-way between columns, in units of a lobe's largest value over azimuths.
-    fn measure(&self, cylinder: &Cylinder) -> [f64; 2] {
+    /// With `of_brightest`, of that of its brightest channel.
+    fn measure(&self, cylinder: &Cylinder, of_brightest: bool) -> [f64; 2] {
         let half_way = |count: usize, row_shift: f64, step_shift: f64| {
             let errors: Vec<f64> = (0..count)
                 .into_par_iter()
@@ -188,6 +198,12 @@ impl TabulatedCylinder {
                                 largest[index] = largest[index].max(exact[index]);
                                 error[index] = error[index].max((found - exact[index]).abs());
                             }
+                        }
+                    }
+                    if of_brightest {
+                        for largest in largest.chunks_exact_mut(self.channel_count) {
+                            let brightest = largest.iter().copied().fold(0.0, f64::max);
+                            largest.fill(brightest);
                         }
                     }
                     // A lobe of nothing has no error.

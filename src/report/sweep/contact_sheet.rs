@@ -54,10 +54,14 @@ impl Sheet {
 }
 
 fn caption(sheet: &ContactSheet) -> String {
-    let nm = sheet.wavelengths_nm.map(|nm| nm.to_string()).join(", ");
+    let nm = sheet.wavelengths_nm.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    let shown = match sheet.wavelengths_nm.len() {
+        3 => "which are shown as the linear red, green and blue of Rec. 709",
+        _ => "whose colour under D65 is shown",
+    };
     format!(
-        "{}, one picture a cell, path-traced with {} samples a pixel at {nm} nm, which are shown as the linear red, green and \
-         blue of Rec. 709; the exposure is the same in all. Digest of the scene: {}.",
+        "{}, one picture a cell, path-traced with {} samples a pixel at {nm} nm, {shown}; the exposure is the same in all. \
+         Digest of the scene: {}.",
         sheet.scene, sheet.samples, sheet.fingerprint
     )
 }
