@@ -20,9 +20,9 @@ pub struct SceneFile {
     /// Remarks and sources.
     #[serde(default)]
     pub about: String,
-    /// Wavelengths for which the materials' models are made, nm. Three, the longest first, are shown as the linear red, green and blue of Rec. 709
-    /// as they are. Of four or more, which rise, the colour is shown: the spectrum that a material scatters, under CIE illuminant
-    /// D65, for the CIE 1931 observer. Lights are white where their channels are equal.
+    /// Wavelengths for which the materials' models are made, nm. Three, the longest first, are shown
+    /// as the linear red, green and blue of Rec. 709. Of four or more, which rise, the colour is shown: the spectrum that a material
+    /// scatters, under CIE illuminant D65, for the CIE 1931 observer. Lights are white where their channels are equal.
     #[serde(default = "default_wavelengths_nm")]
     pub wavelengths_nm: Vec<f64>,
     /// The picture to make.

@@ -69,7 +69,7 @@ fn coats(entry: &SpeciesFile, model: &dyn Model) -> Vec<Vec<f64>> {
     sets.map(of_set).collect()
 }
 
-/// Why pictures of species are made of a spectrum: three wavelengths miss the colour by far more than is seen, seventeen do not.
+/// Why pictures of species are made of a spectrum: three wavelengths miss the colour by more than is just noticed, seventeen do not.
 /// The reflectance is that towards the zenith, of light from 40° across the barbs, times π.
 #[test]
 fn a_spectrum_of_seventeen_gives_the_colours_of_eighty_one() {
@@ -102,7 +102,8 @@ fn a_spectrum_of_seventeen_gives_the_colours_of_eighty_one() {
     }
     println!("largest ΔE2000 of 17 wavelengths, of 3:\n{}", listed.join("\n"));
     assert!(worst_of_spectrum < 0.5, "{worst_of_spectrum}");
-    assert!(worst_of_three > 5.0, "three wavelengths would do: {worst_of_three}");
+    // What is just noticed is about 2.
+    assert!(worst_of_three > 2.0, "three wavelengths would do: {worst_of_three}");
 }
 
 /// The three views are scenes that can be read again; the closest one has the pixels that it promises.
