@@ -240,7 +240,6 @@ fn shade(base: &[f64], layers: &[Layer], key: u64) -> Vec<f64> {
     let mut values = base.to_vec();
     for (number, layer) in layers.iter().enumerate() {
         let level = (key >> (8 * number)) & 0xFF;
-        #[expect(clippy::cast_possible_truncation, reason = "8 bits")]
         let share = layer.levels[level as usize];
         values = moved(&values, &layer.targets, share);
     }
@@ -276,8 +275,7 @@ fn spot(index: u64, uv: [f64; 2], place: Option<&VanePlace>, layers: &[Layer]) -
     let mixed_one = (0..layers.len()).max_by(|a, b| farness(a).total_cmp(&farness(b)));
     let mut keys = [0u64; 2];
     let mut second = 0.0;
-    for number in 0..layers.len() {
-        let (below, share) = between[number];
+    for (number, &(below, share)) in between.iter().enumerate().take(layers.len()) {
         let levels = if Some(number) == mixed_one {
             second = share;
             [below, below + 1]
@@ -290,9 +288,9 @@ fn spot(index: u64, uv: [f64; 2], place: Option<&VanePlace>, layers: &[Layer]) -
         }
     }
     // A level that has no share is not asked for.
-    if second == 0.0 {
+    if second <= 0.0 {
         keys[1] = keys[0];
-    } else if second == 1.0 {
+    } else if second >= 1.0 {
         keys[0] = keys[1];
     }
     #[expect(clippy::cast_possible_truncation, reason = "a share needs no more than f32")]

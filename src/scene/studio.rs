@@ -75,7 +75,7 @@ pub fn studio(entry: &SpeciesFile, path: &Path, view: View) -> Result<SceneFile,
             let (elevation, azimuth) = (30f64.to_radians(), (-55f64).to_radians());
             let flat = distance_mm * elevation.cos();
             let camera = CameraFile::Perspective(PerspectiveFile {
-                position_mm: [flat * azimuth.cos() * -1.0, flat * azimuth.sin(), distance_mm * elevation.sin()],
+                position_mm: [-flat * azimuth.cos(), flat * azimuth.sin(), distance_mm * elevation.sin()],
                 target_mm: [0.0, 0.0, 0.0],
                 up: [0.0, 0.0, 1.0],
                 field_of_view_deg: 13.0,
