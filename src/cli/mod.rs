@@ -1,6 +1,7 @@
 //! Subcommands, one file each.
 
 mod check;
+mod compare;
 mod fit;
 mod geometry;
 mod models;
@@ -34,6 +35,7 @@ enum Command {
     Simulate(simulate::Simulate),
     Sweep(sweep::Sweep),
     Check(check::Check),
+    Compare(compare::Compare),
     Render(render::Render),
     Geometry(geometry::Geometry),
     Models(models::Models),
@@ -59,6 +61,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Simulate(command) => command.run(),
         Command::Sweep(command) => command.run(),
         Command::Check(command) => command.run(),
+        Command::Compare(command) => command.run(),
         Command::Render(command) => command.run(),
         Command::Geometry(command) => command.run(),
         Command::Models(command) => command.run(),

@@ -14,6 +14,7 @@
 mod angles;
 mod chart;
 mod colour_cells;
+mod compare;
 mod curves;
 mod disc;
 mod files;
@@ -39,6 +40,7 @@ use crate::job::{Case, Lobes, Outcome};
 use chart::Figure;
 use plots::Place;
 
+pub use compare::write_comparison;
 pub use files::write as write_file;
 pub use sweep::write_sweep;
 

@@ -4,6 +4,7 @@ mod checkpoint;
 mod coated_base;
 mod colour;
 mod command_line;
+mod compare;
 mod contact_sheet;
 mod coverage;
 mod coverage_models;

@@ -173,6 +173,11 @@ impl Photograph {
         })
     }
 
+    /// Whether Barbule made it, as its EXIF says.
+    pub fn is_synthetic(&self) -> bool {
+        self.exif.description.as_deref() == Some(synthetic::DESCRIPTION)
+    }
+
     /// How many pixels can be trusted, and how many cannot for which reason.
     pub fn counts(&self) -> ValidityCounts {
         let mut counts = ValidityCounts::default();

@@ -125,7 +125,7 @@ impl Regions {
         Ok(Self(regions))
     }
 
-    /// The regions of a photograph: those that name its file, and those that name none.
+    /// The regions of a photograph: those that name its file, and those that name none. Empty where all name others.
     pub fn of(&self, photograph: &Path) -> Vec<Region> {
         let name = photograph.file_name().map(|name| name.to_string_lossy().into_owned());
         let belongs = |region: &&Region| region.file.is_none() || region.file == name;

@@ -17,6 +17,9 @@ use thiserror::Error;
 
 use crate::measure::colour::encode;
 
+/// What EXIF says of such a picture.
+pub(super) const DESCRIPTION: &str = "Synthetic photograph, made by Barbule; no camera took it";
+
 /// A camera that never was.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -183,7 +186,7 @@ impl Camera {
         let text = |text: &str| Value::Ascii(vec![text.as_bytes().to_vec()]);
         let field = |tag, value| Field { tag, ifd_num: In::PRIMARY, value };
         let fields = [
-            field(Tag::ImageDescription, text("Synthetic photograph, made by Barbule; no camera took it")),
+            field(Tag::ImageDescription, text(DESCRIPTION)),
             field(Tag::Make, text("Barbule")),
             field(Tag::Model, text("synthetic camera")),
             field(Tag::Software, text(concat!("Barbule ", env!("CARGO_PKG_VERSION")))),
