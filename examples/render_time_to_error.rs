@@ -5,8 +5,9 @@
 //! It is taken from two pictures with different seeds, whose difference has twice the variance of either. Samples are doubled
 //! until the error is small enough, and the time at 1 % lies on the straight line between the last two in logarithms.
 //!
-//! Pictures are a quarter as wide and high as the benchmark's, since a pixel's error does not hang on the size; the seconds
-//! are those of the benchmark's size, sixteen times the measured ones. All of it takes some minutes.
+//! Pictures are a quarter as wide and high as the benchmark's; the seconds are sixteen times the measured ones, as if for
+//! its size. Edges have a larger share in a small picture: in the boxes the lamp's make most of the error, so that the
+//! benchmark's own size needs fewer samples. All of it takes some minutes.
 
 #[path = "../benches/render/scenes.rs"]
 mod scenes;
