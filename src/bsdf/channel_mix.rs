@@ -83,6 +83,10 @@ impl Bsdf for Mixed<'_> {
         self.bsdf.sample(outgoing, random)
     }
 
+    fn sample_many(&self, outgoing: &[Direction], random: &[[f64; 3]], samples: &mut [Option<Sample>]) {
+        self.bsdf.sample_many(outgoing, random, samples);
+    }
+
     fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {
         self.bsdf.density(incoming, outgoing)
     }
@@ -108,6 +112,10 @@ impl<B: Bsdf + ?Sized> Bsdf for Arc<B> {
 
     fn sample(&self, outgoing: &Direction, random: [f64; 3]) -> Option<Sample> {
         self.as_ref().sample(outgoing, random)
+    }
+
+    fn sample_many(&self, outgoing: &[Direction], random: &[[f64; 3]], samples: &mut [Option<Sample>]) {
+        self.as_ref().sample_many(outgoing, random, samples);
     }
 
     fn density(&self, incoming: &Direction, outgoing: &Direction) -> f64 {

@@ -2,6 +2,7 @@
 
 use super::held_out::comparison_answer;
 use super::outcome::{Case, CaseData, Outcome, PeakFit, ThicknessOrder};
+use super::population::{BRIEF, brief};
 use crate::fit::{Bound, Estimate, Fit, Minimum, RIVAL_SHARE, StopReason, misfit};
 use crate::measure::Compared;
 use crate::number::{minus, significant, to_place, with_error};
@@ -40,14 +41,12 @@ pub(super) fn job_answer(outcome: &Outcome) -> String {
 
 /// A line a group.
 fn groups_answer(cases: &[Case]) -> String {
-    let heading = "Mean over the specimens ± its error, in brackets the standard deviation between specimens; more on each group \
-                   in the report.";
+    let heading = format!("{BRIEF}; more on each group in the report.");
     let line = |case: &Case| {
-        let values =
-            case.population.as_ref().map_or_else(|| values_sentence(case), |population| population.brief.clone());
+        let values = case.population.as_ref().map_or_else(|| values_sentence(case), brief);
         format!("{}: {values}", case.name)
     };
-    std::iter::once(heading.to_owned()).chain(cases.iter().map(line)).collect::<Vec<_>>().join("\n")
+    std::iter::once(heading).chain(cases.iter().map(line)).collect::<Vec<_>>().join("\n")
 }
 
 /// The answer of one case.

@@ -42,4 +42,4 @@ pub use sheet::{Blend, Pattern, Sheet, Vanes};
 pub use texture::Texture;
 pub use tiles::{Checkpoint, Control, Resolution, render};
 
-pub(crate) use sampler::MOST_SAMPLES;
+pub(crate) use sampler::{MOST_SAMPLES, mixed, unit};

@@ -9,7 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::ray::luminance;
-use crate::measure::colour::encode;
+use crate::measure::colour::{encode, screen_byte};
 
 /// Linear radiance of each pixel, in rows from the top.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,12 +58,7 @@ impl ToneMapping {
                 (1.0 + bright / (REINHARD_WHITE * REINHARD_WHITE)) / (1.0 + bright)
             }
         };
-        exposed.map(|channel| {
-            let code = encode((channel * scale).clamp(0.0, 1.0));
-            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
-            let byte = (code * 255.0).round() as u8;
-            byte
-        })
+        exposed.map(|channel| screen_byte(encode((channel * scale).clamp(0.0, 1.0))))
     }
 }
 

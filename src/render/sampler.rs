@@ -114,7 +114,7 @@ const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// The finaliser of `SplitMix64` after one of its steps: every bit of the answer hangs on every bit of the question.
 #[inline]
-fn mixed(value: u64) -> u64 {
+pub(crate) fn mixed(value: u64) -> u64 {
     let mut z = value.wrapping_add(GOLDEN);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -123,7 +123,7 @@ fn mixed(value: u64) -> u64 {
 
 /// The upper 53 bits as a number in [0, 1).
 #[expect(clippy::cast_precision_loss, reason = "53 bits are held exactly")]
-fn unit(bits: u64) -> f64 {
+pub(crate) fn unit(bits: u64) -> f64 {
     (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }
 

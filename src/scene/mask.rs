@@ -5,7 +5,7 @@ use super::inputs::Inputs;
 use super::paint_file::{BarsFile, MaskFile, MottleFile, StripFile, VaneSide};
 use crate::geometry::{Side, VanePlace};
 use crate::measure::photograph::Encoding;
-use crate::render::Texture;
+use crate::render::{Texture, mixed, unit};
 
 /// A layer's mask, checked.
 #[derive(Debug)]
@@ -143,23 +143,10 @@ impl Noise {
         let corner = |dx: f64, dy: f64| {
             #[expect(clippy::cast_possible_truncation, reason = "cells of a feather are few")]
             let (i, j) = ((x0 + dx) as i64, (y0 + dy) as i64);
-            uniform(mixed(self.0 ^ mixed((i.cast_unsigned() << 32) ^ j.cast_unsigned())))
+            unit(mixed(self.0 ^ mixed((i.cast_unsigned() << 32) ^ j.cast_unsigned())))
         };
         let lower = corner(0.0, 0.0) * (1.0 - right) + corner(1.0, 0.0) * right;
         let upper = corner(0.0, 1.0) * (1.0 - right) + corner(1.0, 1.0) * right;
         lower * (1.0 - up) + upper * up
     }
-}
-
-/// A number of 64 bits well mixed (the finaliser of `SplitMix64`, Steele, Lea and Flood 2014).
-pub(super) fn mixed(number: u64) -> u64 {
-    let mut z = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
-}
-
-/// A number in [0, 1) of 64 bits.
-pub(super) fn uniform(bits: u64) -> f64 {
-    (bits >> 11) as f64 * (1.0 / (1u64 << 53) as f64)
 }

@@ -13,14 +13,14 @@ use rayon::prelude::*;
 use super::error::SceneProblem;
 use super::file::MaterialFile;
 use super::inputs::Inputs;
-use super::mask::{Mask, mixed, uniform};
+use super::mask::Mask;
 use super::material::{Spectrum, model, values, wrong_value};
 use super::paint_file::{BarbsShown, LayerFile};
 use crate::bsdf::{BarbDesign, BarbuleDesign, Direction, FeatherDesign, Model};
 use crate::geometry::{FeatherMap, VanePlace};
 use crate::job::ModelFile;
 use crate::nearest::suggestion;
-use crate::render::{Blend, Material, Pattern, Scene};
+use crate::render::{Blend, Material, Pattern, Scene, mixed, unit};
 
 /// Largest difference between the scattering function half-way between two levels and the mean of both, as a share of itself and
 /// a fifth of the brightest level: two steps of an 8-bit screen in the middle of its scale. Between two levels the mixture is
@@ -280,7 +280,7 @@ fn spot(index: u64, uv: [f64; 2], place: Option<&VanePlace>, layers: &[Layer]) -
             second = share;
             [below, below + 1]
         } else {
-            let random = uniform(mixed(mixed(index) ^ number as u64));
+            let random = unit(mixed(mixed(index) ^ number as u64));
             [below + usize::from(random < share); 2]
         };
         for (key, level) in keys.iter_mut().zip(levels) {

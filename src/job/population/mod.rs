@@ -12,6 +12,8 @@ use std::sync::atomic::Ordering;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+pub(super) use words::{BRIEF, brief};
+
 use super::JobError;
 use super::case::{CheckedCase, Comparison};
 use super::support::part;
@@ -45,8 +47,6 @@ pub struct Population {
     pub absorbers: Vec<AbsorberTest>,
     /// All this in a few sentences.
     pub text: String,
-    /// The same in a line, for tables of many groups.
-    pub brief: String,
 }
 
 /// One specimen, fitted by itself.
@@ -200,16 +200,9 @@ pub(super) fn population(case: &CheckedCase, pooled: &Fit, control: &Control) ->
         let (count, effects) = (determined.len(), effects(&determined));
         Some(ParameterSpread { name: (*name).clone(), symbol, unit, count, effects })
     });
-    let mut population = Population {
-        parameters: parameters.collect(),
-        specimens,
-        left_out,
-        absorbers,
-        text: String::new(),
-        brief: String::new(),
-    };
+    let mut population =
+        Population { parameters: parameters.collect(), specimens, left_out, absorbers, text: String::new() };
     population.text = words::text(&population, file, &seen);
-    population.brief = words::brief(&population);
     Ok(Some(population))
 }
 

@@ -47,8 +47,12 @@ pub(super) fn text(population: &Population, file: &JobFile, table: &GonioTable) 
     sentences.join(" ")
 }
 
+/// What a line of [`brief`] holds, in words.
+pub(in super::super) const BRIEF: &str = "Mean over the specimens ± its error, where larger ± the error of the misfit that all \
+                                        share; in brackets the standard deviation between specimens";
+
 /// The same in a line, for tables of many groups.
-pub(super) fn brief(population: &Population) -> String {
+pub(in super::super) fn brief(population: &Population) -> String {
     let named: Vec<String> = population.parameters.iter().take(MOST_NAMED).filter_map(brief_spread).collect();
     let count = population.specimens.len();
     let values = if named.is_empty() { "nothing determined".to_owned() } else { named.join(", ") };
@@ -61,10 +65,15 @@ pub(super) fn brief(population: &Population) -> String {
 }
 
 fn brief_spread(parameter: &ParameterSpread) -> Option<String> {
-    let Effects { mean, mean_standard_error, between, .. } = parameter.effects.as_ref()?;
+    let Effects { mean, mean_standard_error, between, shared, .. } = parameter.effects.as_ref()?;
     let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
-    let mean_text = with_error(*mean, Some(*mean_standard_error));
-    Some(format!("{} {mean_text}{unit} ({})", parameter.symbol, beside_error(*between, Some(*mean_standard_error))))
+    let common = if shared > mean_standard_error { format!(" ± {}", significant(*shared, 2)) } else { String::new() };
+    Some(format!(
+        "{} {}{common}{unit} ({})",
+        parameter.symbol,
+        with_error(*mean, Some(*mean_standard_error)),
+        beside_error(*between, Some(*mean_standard_error)),
+    ))
 }
 
 fn spread(parameter: &ParameterSpread) -> Option<String> {

@@ -72,9 +72,14 @@ impl LinearRgb {
     /// As the web writes it, `#1a2b3c`, and whether that is only the nearest in each channel, since a screen cannot show
     /// the colour itself.
     pub fn on_screen(self) -> (String, bool) {
-        let codes = self.0.map(|channel| (encode(channel) * 255.0).round());
-        let [red, green, blue] = codes.map(|code| byte(code.clamp(0.0, 255.0)));
-        (format!("#{red:02x}{green:02x}{blue:02x}"), codes.iter().any(|code| !(0.0..=255.0).contains(code)))
+        let [red, green, blue] = self.bytes();
+        let is_cut = self.0.iter().any(|channel| !(0.0..=255.0).contains(&(encode(*channel) * 255.0).round()));
+        (format!("#{red:02x}{green:02x}{blue:02x}"), is_cut)
+    }
+
+    /// The nearest byte of each channel as a screen takes it.
+    pub fn bytes(self) -> [u8; 3] {
+        self.0.map(|channel| screen_byte(encode(channel)))
     }
 }
 
@@ -215,7 +220,8 @@ fn lab_root(ratio: f64) -> f64 {
     if ratio > KNEE * KNEE * KNEE { ratio.cbrt() } else { ratio / (3.0 * KNEE * KNEE) + 4.0 / 29.0 }
 }
 
+/// The byte nearest to a screen's code from 0 to 1; codes beyond are cut.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number from 0 to 255")]
-fn byte(code: f64) -> u8 {
-    code as u8
+pub(crate) fn screen_byte(code: f64) -> u8 {
+    (255.0 * code.clamp(0.0, 1.0)).round() as u8
 }

@@ -15,7 +15,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::measure::colour::encode;
+use crate::measure::colour::{encode, screen_byte};
 
 /// What EXIF says of such a picture.
 pub(super) const DESCRIPTION: &str = "Synthetic photograph, made by Barbule; no camera took it";
@@ -150,9 +150,7 @@ impl Camera {
         let code = encode(counted.clamp(0.0, 1.0));
         let turn = std::f64::consts::TAU;
         let rendered = code - self.contrast * (turn * code).sin() / turn;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
-        let byte = (255.0 * rendered.clamp(0.0, 1.0)).round() as u8;
-        byte
+        screen_byte(rendered)
     }
 
     fn check(&self) -> Result<(), SyntheticError> {

@@ -6,7 +6,7 @@ use image::{Rgb, RgbImage};
 
 use super::figures::scale_to;
 use crate::compare::Comparison;
-use crate::measure::colour::encode;
+use crate::measure::colour::LinearRgb;
 use crate::report::palette::PALE;
 use crate::report::{Picture, ReportError};
 
@@ -33,8 +33,10 @@ impl Shown {
             let (width, height) = (side(pixels.width)?, side(colours.len() / pixels.width)?);
             RgbImage::from_raw(width, height, colours.concat()).ok_or_else(|| failed("its rows are not whole"))
         };
-        let [first, second] =
-            pixels.light.each_ref().map(|light| light.iter().map(|pixel| on_screen(*pixel)).collect());
+        let [first, second] = pixels
+            .light
+            .each_ref()
+            .map(|light| light.iter().map(|pixel| LinearRgb(pixel.map(f64::from)).bytes()).collect());
         let colours = scale_to(high);
         let map = pixels.difference.iter().map(|difference| {
             let colour = difference.map_or(PALE, |value| colours.colour(value.into()));
@@ -52,14 +54,6 @@ impl Shown {
             map: png(&map)?,
         })
     }
-}
-
-fn on_screen(light: [f32; 3]) -> [u8; 3] {
-    light.map(|channel| {
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
-        let byte = (255.0 * encode(f64::from(channel).clamp(0.0, 1.0))).round() as u8;
-        byte
-    })
 }
 
 fn shrunk(picture: RgbImage, filter: FilterType) -> RgbImage {
